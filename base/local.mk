@@ -1,0 +1,9 @@
+noinst_LIBRARIES += base/libgbase.a
+base_libgbase_a_SOURCES = \
+	base/clock.c base/clock.h \
+	base/cursor.h \
+	base/diag.c base/diag.h \
+	base/log.c base/log.h \
+	base/pose.c base/pose.h \
+	base/result.c base/result.h
+base_libgbase_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS)

@@ -1,0 +1,152 @@
+/*
+ * A cave layout: the walls, who draws them, how the machines talk, who is
+ * tracked. Read from a libconfig file; every key is in the option table
+ * (config/options.h), and docs/layout.md is made from that table.
+ *
+ * Frame: room (base/pose.h). Lengths are metres, angles radians, times
+ * nanoseconds here; files say degrees and milliseconds in the key's name.
+ *
+ * Ownership: strings and arrays belong to the layout. Not thread safe while
+ * being loaded, read-only after.
+ */
+#ifndef GROTTO_CONFIG_LAYOUT_H
+#define GROTTO_CONFIG_LAYOUT_H
+
+#include "base/diag.h"
+#include "base/pose.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define LAYOUT_NAME_MAX 32 /* with the final NUL */
+#define LAYOUT_MAX_NODES 64
+
+enum layout_eyes {
+	LAYOUT_EYES_MONO,         /* one picture from between the eyes */
+	LAYOUT_EYES_QUAD_BUFFER,  /* left and right back buffer of one context */
+	LAYOUT_EYES_SIDE_BY_SIDE, /* left half and right half of the picture */
+	LAYOUT_EYES_TOP_BOTTOM,   /* left eye on top */
+	LAYOUT_EYES_LEFT,         /* this node draws the left eye alone */
+	LAYOUT_EYES_RIGHT,
+};
+
+enum layout_target {
+	LAYOUT_TARGET_HEADLESS, /* EGL without a display: device platform, then surfaceless */
+	LAYOUT_TARGET_WINDOW,   /* a GLFW window */
+	LAYOUT_TARGET_FULLSCREEN,
+};
+
+enum layout_cast { LAYOUT_UNICAST, LAYOUT_MULTICAST, LAYOUT_BROADCAST };
+
+/* One projected wall. Corners as the person inside sees them. */
+struct layout_wall {
+	char name[LAYOUT_NAME_MAX];
+	vec3 lower_left, lower_right, upper_left; /* room, metres */
+	int pixels[2];                            /* of the whole wall and one eye */
+	int line;                                 /* in the file */
+};
+
+/* One render node: draws `part` of one wall. */
+struct layout_node {
+	char name[LAYOUT_NAME_MAX]; /* unique; the instance of grotto-node@NAME */
+	size_t wall;                /* index into walls */
+	float part[4];              /* x0 y0 x1 y1 of the wall, 0..1 from its lower left */
+	char *address;              /* numeric IPv4 or IPv6 */
+	uint16_t port;
+	enum layout_eyes eyes;
+	enum layout_target target;
+	char *display; /* X display for a window, NULL for the environment's */
+	int monitor;   /* for fullscreen */
+	int gpu;       /* EGL device index, -1 for the first that works */
+	int line;
+};
+
+struct layout_network {
+	enum layout_cast cast;
+	char *interface;      /* name, NULL: the system chooses */
+	char *master_address; /* numeric */
+	uint16_t master_port;
+	char *group; /* multicast group or broadcast address, NULL for unicast */
+	uint16_t group_port;
+	int ttl;
+	int mtu;        /* bytes of an IP packet */
+	char *key_file; /* absolute, or relative to the layout file; NULL: unkeyed, loopback only */
+};
+
+struct layout_rates {
+	float frame_hz;
+	int64_t barrier_deadline_ns; /* after which SWAP goes out without the late */
+	int evict_frames;            /* missed in a row before a node is left out */
+	int64_t display_latency_ns;  /* from SWAP to light on the wall, for the photon time */
+};
+
+enum layout_tracker_kind { LAYOUT_TRACKER_SIM, LAYOUT_TRACKER_REPLAY };
+
+/* The simulated visitor, see tracking/sim.h for what each does. */
+struct layout_sim {
+	float rate_hz;
+	float noise_position_m; /* standard deviation */
+	float noise_angle_rad;
+	int64_t latency_ns;
+	float dropout_per_s; /* mean number of drop-outs a second */
+	int64_t dropout_ns;  /* length of one */
+	uint32_t seed;
+	float walk_radius_m; /* how far from the start pose the visitor walks */
+	float walk_speed_m_s;
+};
+
+struct layout_tracker {
+	char name[LAYOUT_NAME_MAX];
+	enum layout_tracker_kind kind;
+	bool head, wand; /* what it tracks */
+	char *file;      /* replay: the log, absolute or relative to the layout file */
+	bool loop;
+	struct layout_sim sim;
+	int line;
+};
+
+struct layout {
+	char *path; /* as given to layout_load */
+	char name[LAYOUT_NAME_MAX];
+	struct layout_wall *walls;
+	size_t wall_count;
+	struct layout_node *nodes;
+	size_t node_count;
+	struct layout_network network;
+	struct layout_rates rates;
+	struct layout_tracker *trackers;
+	size_t tracker_count;
+	struct gr_pose start_head; /* T_room_head before a tracker speaks */
+	struct gr_pose start_wand;
+	float eye_separation_m;
+	vec3 room_min, room_max; /* where eyes may be; from the walls unless given */
+	char *control_socket;    /* path of the master's control socket */
+	uint8_t hash[32];        /* BLAKE2b of the canonical form; nodes compare it at join */
+};
+
+/*
+ * Reads and checks a layout. Faults go to diag, each with file and line.
+ * GR_OK with *out set; GR_ERR_CONFIG when diag has an error, GR_ERR_IO,
+ * GR_ERR_NOMEM: *out is NULL then.
+ */
+int layout_load(const char *path, struct layout **out, struct gr_diag *diag);
+void layout_destroy(struct layout **layout);
+
+/* Index of the node of that name, or -1. */
+int layout_find_node(const struct layout *layout, const char *name);
+/* The corners of the part of a wall that a node draws, and its pixels (one eye). */
+void layout_node_corners(const struct layout *layout, size_t node, vec3 lower_left,
+			 vec3 lower_right, vec3 upper_left);
+void layout_node_pixels(const struct layout *layout, size_t node, int pixels[2]);
+/* key_file as a path that can be opened; NULL when there is none. Caller frees. */
+char *layout_key_path(const struct layout *layout);
+
+/*
+ * What `grotto check` says about the room: size of each wall, and for each two
+ * walls that share an edge the gap or overlap in millimetres at both ends.
+ * Adds GR_DIAG_NOTE lines, and a warning from 5 mm on.
+ */
+void layout_report_geometry(const struct layout *layout, struct gr_diag *diag);
+
+#endif

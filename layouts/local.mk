@@ -1,0 +1,1 @@
+# What layouts/ adds to the build.

@@ -1,0 +1,132 @@
+/*
+ * The master's side of FDP: a state machine without sockets and clocks. The
+ * caller hands in datagrams and the time, and gets datagrams to send and
+ * events to act on. docs/protocol.md gives every byte.
+ *
+ * One frame:
+ *   fdp_master_begin(m, state, frame, now)   delta goes out to all live nodes
+ *   fdp_master_receive(...)                  ACK, NACK (repaired), READY
+ *   event FDP_MASTER_SWAP                    SWAP(frame) went out: all live nodes were
+ *                                            ready, or the deadline passed
+ * and then the next. Not thread safe; no allocation after create.
+ */
+#ifndef GROTTO_PROTOCOL_MASTER_H
+#define GROTTO_PROTOCOL_MASTER_H
+
+#include "protocol/key.h"
+#include "protocol/params.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define FDP_MAX_NODES 64
+#define FDP_TO_ALL (-1)
+#define FDP_REASON_MAX 160
+
+enum fdp_peer_state {
+	FDP_PEER_ABSENT,  /* never heard of, or left */
+	FDP_PEER_JOINING, /* its snapshot is on the way */
+	FDP_PEER_LIVE,    /* counts in the barrier */
+	FDP_PEER_LATE,    /* missed the last barrier, still counts */
+	FDP_PEER_DEAD,    /* evicted; may join again */
+};
+const char *fdp_peer_state_name(enum fdp_peer_state state);
+
+enum fdp_master_event_kind {
+	FDP_MASTER_JOINED,   /* node: live from the frame after this one */
+	FDP_MASTER_LEFT,
+	FDP_MASTER_REFUSED,  /* node asked to join and may not: reason */
+	FDP_MASTER_LATE,     /* node missed the barrier of `frame` */
+	FDP_MASTER_EVICTED,  /* node missed evict_frames in a row */
+	FDP_MASTER_MISMATCH, /* node's state hash differs: ours, theirs; it gets a snapshot */
+	FDP_MASTER_SWAP,     /* SWAP(frame) was sent */
+};
+
+struct fdp_master_event {
+	enum fdp_master_event_kind kind;
+	int node; /* -1 when about all */
+	uint64_t frame;
+	uint64_t ours, theirs;
+	const char *reason; /* valid during the call */
+};
+
+struct fdp_master_params {
+	uint64_t session; /* random, new at every start, not 0 */
+	uint8_t key[FDP_KEY_BYTES];
+	uint8_t layout_hash[32], scene_hash[32];
+	const char *const *node_names;
+	size_t node_count;
+	size_t datagram_max; /* UDP payload bytes: MTU less IP and UDP headers */
+	int64_t deadline_ns; /* of the barrier, from fdp_master_begin */
+	int64_t probe_ns;    /* ask who has not acknowledged after this; 0: deadline/8 */
+	unsigned evict_frames;
+	bool multicast; /* FDP_TO_ALL is one send on the wire, not one a node */
+};
+
+struct fdp_master_ops {
+	/*
+	 * One datagram to node `to`, or to all nodes for FDP_TO_ALL. Where the
+	 * node's address is not the layout's, the caller has the last source
+	 * address it heard an authenticated datagram from.
+	 */
+	void (*send)(void *ctx, int to, const uint8_t *bytes, size_t len);
+	void (*event)(void *ctx, const struct fdp_master_event *event);
+	void *ctx;
+};
+
+struct fdp_counters {
+	uint64_t datagrams_out, bytes_out, datagrams_in, bytes_in;
+	uint64_t repairs;      /* fragments sent again */
+	uint64_t packed;       /* messages sent in LZO form */
+	uint64_t bad_short, bad_version, bad_auth, bad_session, bad_format, bad_replay;
+};
+
+/* What the status page shows of a node. */
+struct fdp_peer_status {
+	enum fdp_peer_state state;
+	uint64_t acked;   /* last frame whose state it has applied */
+	uint64_t ready;   /* last frame it was ready for */
+	uint64_t swapped; /* frames it reported as swapped */
+	uint64_t missed;  /* barriers missed since it joined */
+	uint64_t mismatches;
+	int64_t last_heard_ns;
+	int64_t ready_after_ns;    /* last READY, from fdp_master_begin */
+	int64_t swap_local_ns;     /* node's own CLOCK_MONOTONIC when it swapped `swapped_frame` */
+	uint64_t swapped_frame;
+	uint32_t render_us;        /* GPU and CPU time the node says it took */
+};
+
+struct fdp_master;
+int fdp_master_create(struct fdp_master **out, const struct fdp_master_params *params,
+		      const struct fdp_master_ops *ops);
+void fdp_master_destroy(struct fdp_master **master);
+
+/*
+ * Sends the state of `frame` (greater than the last). State must carry
+ * versions up to `frame`. GR_ERR_STATE while the previous frame has not
+ * swapped.
+ */
+int fdp_master_begin(struct fdp_master *master, const struct param_state *state, uint64_t frame,
+		     int64_t now_ns);
+/*
+ * A datagram that arrived. Returns the node it is authentically from (>= 0),
+ * or a negative result; everything bad is counted and dropped.
+ */
+int fdp_master_receive(struct fdp_master *master, const uint8_t *bytes, size_t len, int64_t now_ns);
+/* Does what time asks for: probes, deadline, evictions. */
+void fdp_master_tick(struct fdp_master *master, int64_t now_ns);
+/* When tick wants to be called next; INT64_MAX when nothing is pending. */
+int64_t fdp_master_next(const struct fdp_master *master);
+/* No frame is under way: begin may be called. */
+bool fdp_master_idle(const struct fdp_master *master);
+size_t fdp_master_live(const struct fdp_master *master);
+/* Nodes that wait for their snapshot or are live. */
+size_t fdp_master_present(const struct fdp_master *master);
+/* Tells all nodes that the master goes. */
+void fdp_master_leave(struct fdp_master *master, int64_t now_ns);
+uint64_t fdp_master_hash(const struct fdp_master *master);
+void fdp_master_peer(const struct fdp_master *master, size_t node, struct fdp_peer_status *out);
+void fdp_master_counters(const struct fdp_master *master, struct fdp_counters *out);
+
+#endif

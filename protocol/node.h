@@ -1,0 +1,73 @@
+/*
+ * A render node's side of FDP: a state machine without sockets and clocks,
+ * the counterpart of protocol/master.h.
+ *
+ *   event FDP_NODE_JOINED          the master took us; a snapshot follows
+ *   event FDP_NODE_FRAME           state of `frame` is applied: render it
+ *   fdp_node_ready(n, frame, ...)  the GPU has finished
+ *   event FDP_NODE_SWAP            show `frame` now
+ *   fdp_node_swapped(n, frame, ...)
+ *
+ * Without a master it asks to join every join_ns, for ever. A frame whose
+ * successor arrives first is dropped (FDP_NODE_FRAME comes only for the
+ * newest). A master that restarts (new session) is joined anew.
+ * Not thread safe; no allocation after create.
+ */
+#ifndef GROTTO_PROTOCOL_NODE_H
+#define GROTTO_PROTOCOL_NODE_H
+
+#include "protocol/master.h"
+
+enum fdp_node_state { FDP_NODE_ALONE, FDP_NODE_ASKING, FDP_NODE_WAITING_SNAPSHOT, FDP_NODE_LIVE };
+const char *fdp_node_state_name(enum fdp_node_state state);
+
+enum fdp_node_event_kind {
+	FDP_NODE_JOINED,
+	FDP_NODE_FRAME,
+	FDP_NODE_SWAP,
+	FDP_NODE_REFUSED,  /* reason from the master: other layout, other scene, other version */
+	FDP_NODE_LOST,     /* nothing from the master for silence_ns: asking again */
+	FDP_NODE_MASTER_LEFT,
+	FDP_NODE_MISMATCH, /* our state hash is not the master's: ours, theirs; asked for a snapshot */
+};
+
+struct fdp_node_event {
+	enum fdp_node_event_kind kind;
+	uint64_t frame;
+	uint64_t ours, theirs;
+	const char *reason;
+};
+
+struct fdp_node_params {
+	uint16_t index; /* of this node in the layout */
+	const char *name;
+	uint8_t key[FDP_KEY_BYTES];
+	uint8_t layout_hash[32], scene_hash[32];
+	size_t datagram_max;
+	int64_t join_ns;    /* between two requests to join; 0: 200 ms */
+	int64_t silence_ns; /* master counts as lost after this; 0: 2 s */
+};
+
+struct fdp_node_ops {
+	void (*send)(void *ctx, const uint8_t *bytes, size_t len); /* to the master */
+	void (*event)(void *ctx, const struct fdp_node_event *event);
+	void *ctx;
+};
+
+struct fdp_node;
+int fdp_node_create(struct fdp_node **out, const struct fdp_node_params *params,
+		    const struct fdp_node_ops *ops);
+void fdp_node_destroy(struct fdp_node **node);
+int fdp_node_receive(struct fdp_node *node, const uint8_t *bytes, size_t len, int64_t now_ns);
+void fdp_node_tick(struct fdp_node *node, int64_t now_ns);
+int64_t fdp_node_next(const struct fdp_node *node);
+/* The state of the frame of the last FDP_NODE_FRAME; valid until the next call of receive. */
+const struct param_state *fdp_node_params_state(const struct fdp_node *node);
+void fdp_node_ready(struct fdp_node *node, uint64_t frame, uint32_t render_us, int64_t now_ns);
+void fdp_node_swapped(struct fdp_node *node, uint64_t frame, int64_t swap_ns, int64_t now_ns);
+void fdp_node_leave(struct fdp_node *node, int64_t now_ns);
+enum fdp_node_state fdp_node_status(const struct fdp_node *node);
+uint64_t fdp_node_hash(const struct fdp_node *node);
+void fdp_node_counters(const struct fdp_node *node, struct fdp_counters *out);
+
+#endif

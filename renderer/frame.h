@@ -1,0 +1,42 @@
+/*
+ * What one frame shows: plain values, filled by the daemon from the applied
+ * parameters (or by a tool by hand). The renderer keeps no other truth.
+ */
+#ifndef GROTTO_RENDERER_FRAME_H
+#define GROTTO_RENDERER_FRAME_H
+
+#include "base/pose.h"
+#include "config/scene_file.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* A lamp as it is in this frame; kind, cone and radius are the scene file's. */
+struct frame_lamp {
+	bool on;
+	vec3 position;  /* scene, metres */
+	vec3 direction; /* scene, unit */
+	vec3 intensity; /* W/sr, directional: W/m^2 */
+};
+
+struct render_frame {
+	uint64_t frame;
+	struct gr_pose T_scene_room;
+	struct gr_pose T_room_head;
+	float eye_separation_m;
+	struct frame_lamp lamps[SCENE_MAX_LAMPS]; /* as many as the scene file has */
+	bool gi_on;
+	uint64_t gi_epoch; /* a change restarts the light at its steady state */
+	int gi_steps;
+	float gi_incremental;
+	float absorption_per_m, scattering_per_m;
+	float exposure;
+	enum scene_curve curve;
+	float gamma_encode;
+	bool srgb;
+};
+
+/* The frame that a scene file describes, before anything moves. */
+void render_frame_init(struct render_frame *frame, const struct scene_file *file);
+
+#endif

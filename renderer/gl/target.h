@@ -1,0 +1,42 @@
+/*
+ * Where a node draws: an EGL context without a display, or a GLFW window.
+ * One context per process, current on the thread that created it; all GL
+ * work happens on that thread.
+ */
+#ifndef GROTTO_RENDERER_GL_TARGET_H
+#define GROTTO_RENDERER_GL_TARGET_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum target_kind { TARGET_HEADLESS, TARGET_WINDOW, TARGET_FULLSCREEN };
+
+struct target_params {
+	enum target_kind kind;
+	const char *title;
+	const char *display; /* X display, NULL for the environment's */
+	int width, height;   /* of the whole surface, both eyes of side-by-side included */
+	int gpu;             /* EGL device index, -1: the first that gives GL 4.5 */
+	int monitor;
+	bool quad_buffer; /* ask for a stereo visual; refused when there is none */
+	bool debug;       /* KHR_debug messages go to the log */
+};
+
+struct target;
+/*
+ * OpenGL 4.5 core or GR_ERR_UNSUPPORTED, with what was found in the log.
+ * Headless tries EGL_EXT_platform_device, then EGL_MESA_platform_surfaceless.
+ */
+int target_create(struct target **out, const struct target_params *params);
+void target_destroy(struct target **target);
+/* Framebuffer to draw the final picture of an eye into: 0 in a window, an RGBA8
+ * FBO headless (readable after the frame). eye 1 differs only with quad_buffer. */
+unsigned target_framebuffer(const struct target *target, int eye);
+void target_size(const struct target *target, int *width, int *height);
+/* Shows what was drawn. Headless: nothing but GL_FLUSH. False when the window was closed. */
+bool target_swap(struct target *target);
+/* "llvmpipe (LLVM 15.0.6, 256 bits)", for log and summary. */
+const char *target_renderer_name(const struct target *target);
+const char *target_platform_name(const struct target *target);
+
+#endif

@@ -1,0 +1,30 @@
+/*
+ * GPU time per stage by GL_TIMESTAMP queries in a ring, read some frames
+ * later so that nothing waits (seed 004 section 4.6). On software renderers,
+ * where the GPU is this CPU, it is the time the commands took to run.
+ */
+#ifndef GROTTO_RENDERER_GL_TIMER_H
+#define GROTTO_RENDERER_GL_TIMER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define TIMER_STAGES 16
+
+struct timer_stats {
+	const char *name; /* NULL: unused */
+	uint64_t count;   /* frames in which the stage ran */
+	double last_ms, mean_ms, min_ms, max_ms;
+};
+
+struct timers;
+int timers_create(struct timers **out);
+void timers_destroy(struct timers **timers);
+/* Stages are known by index; the name is kept, not copied. May not nest. */
+void timers_begin(struct timers *timers, int stage, const char *name);
+void timers_end(struct timers *timers, int stage);
+/* At the end of a frame: collects what is ready, never waits. */
+void timers_frame(struct timers *timers);
+void timers_stats(const struct timers *timers, int stage, struct timer_stats *out);
+
+#endif

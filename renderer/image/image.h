@@ -1,0 +1,33 @@
+/*
+ * Pictures in files. EXR through OpenEXRCore (scan lines, 32 bit float or
+ * half, ZIP), PNG through libpng. Row 0 is the top everywhere.
+ */
+#ifndef GROTTO_RENDERER_IMAGE_IMAGE_H
+#define GROTTO_RENDERER_IMAGE_IMAGE_H
+
+#include "base/diag.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* width * height * channels floats, interleaved. */
+struct image {
+	int width, height, channels; /* channels 1, 3 or 4 */
+	float *data;
+};
+
+int image_create(struct image *out, int width, int height, int channels);
+void image_finish(struct image *image);
+
+/* Scene-linear. `channel_names`: one per channel, NULL for R G B (A) or Y. */
+int image_write_exr(const char *path, const struct image *image, const char *const *channel_names);
+/*
+ * Reads channels R G B (or Y, or the single channel there is) as float. A
+ * missing, truncated or unsupported file is named in diag: GR_ERR_CONFIG.
+ */
+int image_read_exr(const char *path, struct image *out, struct gr_diag *diag);
+/* rgb: 3 bytes a pixel, already encoded. */
+int image_write_png(const char *path, int width, int height, const uint8_t *rgb);
+int image_read_png(const char *path, int *width, int *height, uint8_t **rgb, struct gr_diag *diag);
+
+#endif

@@ -1,0 +1,20 @@
+# Fragments of the renderer: gl + scene + image, trace + gi, view + tone. Each adds
+# its sources to RENDERER_SOURCES and its GLSL files to SHADERS.
+RENDERER_SOURCES = renderer/renderer.h renderer/frame.h
+
+include $(top_srcdir)/renderer/gl/local.mk
+include $(top_srcdir)/renderer/gi/local.mk
+include $(top_srcdir)/renderer/view/local.mk
+
+noinst_LIBRARIES += renderer/libgrenderer.a
+renderer_libgrenderer_a_SOURCES = $(RENDERER_SOURCES)
+renderer_libgrenderer_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(EPOXY_CFLAGS) $(GLFW_CFLAGS) \
+	$(ASSIMP_CFLAGS) $(OPENEXR_CFLAGS) $(PNG_CFLAGS) $(SODIUM_CFLAGS)
+
+# What a program that links each layer needs, lowest last.
+BASE_LIBS = base/libgbase.a $(SODIUM_LIBS)
+CONFIG_LIBS = config/libgconfig.a $(BASE_LIBS) $(LIBCONFIG_LIBS)
+PROTOCOL_LIBS = protocol/libgprotocol.a $(BASE_LIBS) $(LZO_LIBS)
+TRACKING_LIBS = tracking/libgtracking.a $(BASE_LIBS)
+RENDERER_LIBS = renderer/libgrenderer.a $(CONFIG_LIBS) $(EPOXY_LIBS) $(GLFW_LIBS) \
+	$(ASSIMP_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(EMBREE_LIBS)

@@ -1,0 +1,81 @@
+/*
+ * The whole pipeline of one wall (or one still): shadow and reflective shadow
+ * maps of lamps that changed, global illumination, and per eye G-buffer,
+ * shading, tone curve and encoding. Stages that the scene does not need do
+ * not exist; the log says which run and why.
+ *
+ * GL thread only. No allocation after create.
+ */
+#ifndef GROTTO_RENDERER_RENDERER_H
+#define GROTTO_RENDERER_RENDERER_H
+
+#include "renderer/frame.h"
+#include "renderer/gl/target.h"
+#include "renderer/gl/timer.h"
+#include "renderer/image/image.h"
+#include "renderer/scene/scene.h"
+#include "renderer/view/projection.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum renderer_eyes {
+	RENDERER_MONO,
+	RENDERER_QUAD_BUFFER,
+	RENDERER_SIDE_BY_SIDE,
+	RENDERER_TOP_BOTTOM,
+	RENDERER_LEFT,
+	RENDERER_RIGHT,
+};
+
+struct renderer_params {
+	int width, height; /* of one eye's picture */
+	enum renderer_eyes eyes;
+	bool wall_given;
+	struct projection_wall wall; /* room frame; without it: a camera per still */
+	bool keep_radiance;          /* scene-linear pictures can be read back */
+};
+
+/* Target size that params need: both eyes for side-by-side and top-bottom. */
+void renderer_target_size(const struct renderer_params *params, int *width, int *height);
+
+struct renderer;
+/* target, file and scene must outlive the renderer. Logs the stages. */
+int renderer_create(struct renderer **out, struct target *target,
+		    const struct renderer_params *params, const struct scene_file *file,
+		    const struct scene *scene);
+void renderer_destroy(struct renderer **renderer);
+
+/*
+ * Submits one frame for the wall. GR_OK, or GR_NOTHING when an eye is where
+ * no picture exists (behind the wall): the last picture stays and is counted.
+ * Does not wait for the GPU.
+ */
+int renderer_draw(struct renderer *renderer, const struct render_frame *frame);
+/* A still from a camera of the scene file instead of the wall. */
+int renderer_draw_camera(struct renderer *renderer, const struct render_frame *frame,
+			 const struct scene_camera *camera);
+/*
+ * Whether the GPU has finished the last submitted frame. wait_ns 0 polls.
+ * GR_OK finished, GR_NOTHING not yet, GR_ERR_GL lost.
+ */
+int renderer_finished(struct renderer *renderer, int64_t wait_ns);
+
+/* Final picture as encoded 8 bit RGB (3 bytes a pixel, row 0 top) of the whole target. Waits. */
+int renderer_read_rgb(struct renderer *renderer, uint8_t *rgb);
+/* Scene-linear radiance of one eye, 3 channels; needs keep_radiance. Waits. */
+int renderer_read_radiance(struct renderer *renderer, int eye, struct image *out);
+/* Indirect irradiance-reflected part alone (same units), for accuracy tests. Needs keep_radiance. */
+int renderer_read_indirect(struct renderer *renderer, int eye, struct image *out);
+/* Hash of the light field, see gi.h; 0 when there is no method. Waits. */
+uint64_t renderer_light_hash(struct renderer *renderer);
+struct timers *renderer_timers(struct renderer *renderer);
+
+struct renderer_stats {
+	uint64_t frames, skipped_eyes;
+	uint64_t shadow_updates, gi_updates; /* frames in which the stage ran */
+	uint64_t gl_errors, nonfinite;
+};
+void renderer_stats(const struct renderer *renderer, struct renderer_stats *out);
+
+#endif

@@ -1,0 +1,31 @@
+/*
+ * CPU rays through a scene (Embree). Used for what is computed once: link
+ * transmittance of the lattice, later baking and the reference. Two-sided:
+ * every triangle stops a ray.
+ *
+ * Thread safety: queries may run on several threads at once.
+ */
+#ifndef GROTTO_RENDERER_TRACE_RAYS_H
+#define GROTTO_RENDERER_TRACE_RAYS_H
+
+#include "renderer/scene/scene.h"
+
+#include <stdbool.h>
+
+struct rays;
+/* Builds the acceleration structure; the scene may go after. */
+int rays_create(struct rays **out, const struct scene *scene);
+void rays_destroy(struct rays **rays);
+
+struct ray_hit {
+	float distance;
+	unsigned triangle; /* index of the triangle: indices[3 * triangle] */
+	float u, v;
+	float normal[3]; /* geometric, unit, front side */
+};
+bool rays_nearest(const struct rays *rays, const float origin[3], const float direction[3],
+		  float max_distance, struct ray_hit *out);
+/* Anything strictly between the points a and b. */
+bool rays_blocked(const struct rays *rays, const float a[3], const float b[3]);
+
+#endif

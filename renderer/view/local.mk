@@ -1,0 +1,2 @@
+# renderer/view, renderer/tone
+RENDERER_SOURCES += renderer/view/projection.h

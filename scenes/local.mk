@@ -1,0 +1,1 @@
+# What scenes/ adds to the build.

@@ -1,0 +1,12 @@
+# Tests. Each fragment adds to TESTS; a test that cannot run here exits 77 and says why.
+TEST_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(CMOCKA_CFLAGS)
+
+include $(top_srcdir)/tests/base.mk
+include $(top_srcdir)/tests/config.mk
+include $(top_srcdir)/tests/protocol.mk
+include $(top_srcdir)/tests/tracking.mk
+include $(top_srcdir)/tests/gl.mk
+include $(top_srcdir)/tests/gi.mk
+include $(top_srcdir)/tests/view.mk
+include $(top_srcdir)/tests/daemon.mk
+include $(top_srcdir)/tests/tools.mk

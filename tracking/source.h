@@ -1,0 +1,79 @@
+/*
+ * A tracker: something that says where head and wand are. Drivers fill a
+ * history of time-stamped samples; the master asks for the pose at the time
+ * at which the frame's photons leave the wall.
+ *
+ * Frame: room. Times: ns of the master's monotonic clock (or of the frame
+ * clock of a demo). Thread: a source is polled by one thread.
+ */
+#ifndef GROTTO_TRACKING_SOURCE_H
+#define GROTTO_TRACKING_SOURCE_H
+
+#include "base/diag.h"
+#include "base/pose.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum track_body { TRACK_HEAD, TRACK_WAND, TRACK_BODIES };
+
+struct track_sample {
+	int64_t time_ns; /* when the body was there */
+	enum track_body body;
+	struct gr_pose T_room_body;
+	uint32_t buttons; /* wand only */
+	bool valid;       /* false: the device said it lost the body at time_ns */
+};
+
+struct track_source;
+
+/* What a driver implements; tracking/sim.c and tracking/replay.c are examples. */
+struct track_source_ops {
+	const char *kind;
+	/*
+	 * Delivers samples that are available at `now`, oldest first, at most
+	 * `room`; returns how many. Never blocks.
+	 */
+	int (*poll)(struct track_source *source, int64_t now_ns, struct track_sample *out, int room);
+	/* File descriptor to wait on, or -1: poll by time. */
+	int (*fd)(const struct track_source *source);
+	/* When the next sample will be there (fd == -1), INT64_MAX when never. */
+	int64_t (*next)(const struct track_source *source, int64_t now_ns);
+	void (*destroy)(struct track_source *source);
+};
+
+/* First member of every driver's own struct. */
+struct track_source {
+	const struct track_source_ops *ops;
+};
+
+int track_poll(struct track_source *source, int64_t now_ns, struct track_sample *out, int room);
+int64_t track_next(const struct track_source *source, int64_t now_ns);
+void track_source_destroy(struct track_source **source);
+
+/*
+ * The recent past of each body. Fixed size, no allocation. A sample with a
+ * bad pose, an older time than the last or a time more than 1 s ahead of now
+ * is dropped and counted.
+ */
+#define TRACK_HISTORY 64
+struct track_history {
+	struct track_sample ring[TRACK_BODIES][TRACK_HISTORY];
+	uint64_t count[TRACK_BODIES]; /* ever stored */
+	uint64_t dropped;
+};
+void track_history_init(struct track_history *history);
+int track_history_add(struct track_history *history, const struct track_sample *sample,
+		      int64_t now_ns);
+
+/*
+ * The pose at time_ns: between two samples mixed, after the last one
+ * extrapolated with the last velocity for at most max_ahead_ns, then held.
+ * False, and *out untouched, when the body was never seen. *tracked tells
+ * whether the last sample was valid and younger than stale_ns.
+ */
+bool track_history_at(const struct track_history *history, enum track_body body, int64_t time_ns,
+		      int64_t max_ahead_ns, int64_t stale_ns, struct track_sample *out,
+		      bool *tracked);
+
+#endif
