@@ -46,7 +46,7 @@ static inline struct unit_random unit_random_start(const char *name)
 }
 
 /* A heap copy of exactly len bytes, so that a sanitizer sees one byte read too many. */
-static inline __attribute__((noinline)) uint8_t *unit_copy(const void *bytes, size_t len)
+static __attribute__((noinline, unused)) uint8_t *unit_copy(const void *bytes, size_t len)
 {
 	uint8_t *copy = malloc(len ? len : 1);
 
