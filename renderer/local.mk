@@ -8,6 +8,8 @@ include $(top_srcdir)/renderer/view/local.mk
 
 noinst_LIBRARIES += renderer/libgrenderer.a
 renderer_libgrenderer_a_SOURCES = $(RENDERER_SOURCES)
+nodist_renderer_libgrenderer_a_SOURCES = renderer/shaders/embedded.c
+EXTRA_DIST += $(SHADERS)
 renderer_libgrenderer_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(EPOXY_CFLAGS) $(GLFW_CFLAGS) \
 	$(ASSIMP_CFLAGS) $(OPENEXR_CFLAGS) $(PNG_CFLAGS) $(SODIUM_CFLAGS)
 

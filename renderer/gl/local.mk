@@ -1,5 +1,25 @@
 # renderer/gl, renderer/scene, renderer/image
 RENDERER_SOURCES += \
-	renderer/gl/mesh.h renderer/gl/program.h renderer/gl/target.h renderer/gl/timer.h \
+	renderer/gl/mesh.h renderer/gl/program.c renderer/gl/program.h \
+	renderer/gl/shader_text.c renderer/gl/shader_text.h renderer/gl/shaders.h \
+	renderer/gl/target.h renderer/gl/timer.h \
 	renderer/image/image.h \
 	renderer/scene/scene.h
+
+SHADERS += renderer/shaders/material.glsl
+EXTRA_DIST += renderer/shaders/embed.awk renderer/shaders/resolve.awk renderer/shaders/check.sh
+
+# All SHADERS become one C file; before that they are compiled offline where
+# there is a validator. The paths are put together by the shell since SHADERS
+# are relative to the source tree.
+if HAVE_GLSLANG
+SHADERS_CHECKED = renderer/shaders/checked.stamp
+endif
+renderer/shaders/checked.stamp: $(SHADERS) renderer/shaders/resolve.awk renderer/shaders/check.sh Makefile
+	$(AM_V_GEN)$(MKDIR_P) renderer/shaders && stamp=`pwd`/$@ && cd $(srcdir) && \
+	$(SHELL) renderer/shaders/check.sh "$(AWK)" "$(GLSLANG)" $(SHADERS) && echo ok >$$stamp
+renderer/shaders/embedded.c: $(SHADERS) renderer/shaders/embed.awk Makefile $(SHADERS_CHECKED)
+	$(AM_V_GEN)$(MKDIR_P) renderer/shaders && out=`pwd`/$@ && cd $(srcdir) && \
+	$(AWK) -f renderer/shaders/embed.awk $(SHADERS) >$$out.tmp && mv $$out.tmp $$out
+CLEANFILES += renderer/shaders/embedded.c renderer/shaders/embedded.c.tmp \
+	renderer/shaders/checked.stamp

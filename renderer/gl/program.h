@@ -7,10 +7,15 @@
 #ifndef GROTTO_RENDERER_GL_PROGRAM_H
 #define GROTTO_RENDERER_GL_PROGRAM_H
 
-/* Source text of an embedded file, or NULL. */
+/* Source text of an embedded file by its base name, or NULL. */
 const char *shader_source(const char *name);
 
 /*
+ * In a shader file: `#include "name.glsl"`, or `#include WORD` where `defines`
+ * has `#define WORD "name.glsl"`; a file is included once. Lines of the form
+ * `// check: #define N 26` are the defines with which `make` compiles the file
+ * offline (renderer/shaders/check.sh); at run time they are comments.
+ *
  * Vertex + optional geometry + fragment shader; geometry may be NULL, fragment
  * NULL for depth only. `defines` is text put after #version ("#define N 26\n"),
  * or NULL. GR_OK with *out_program, or GR_ERR_GL.
