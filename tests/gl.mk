@@ -1,1 +1,15 @@
-# tests of gl
+# tests of renderer/gl, renderer/scene, renderer/image and scenes/
+GL_TEST_CFLAGS = $(TEST_CFLAGS) $(EPOXY_CFLAGS) $(OPENEXR_CFLAGS) $(PNG_CFLAGS)
+GL_TEST_LIBS = $(RENDERER_LIBS) $(CMOCKA_LIBS)
+
+check_PROGRAMS += tests/unit/test_target tests/unit/test_program
+TESTS += tests/unit/test_target tests/unit/test_program tests/unit/window.sh
+EXTRA_DIST += tests/unit/window.sh
+
+tests_unit_test_target_SOURCES = tests/unit/test_target.c tests/unit/unit.h tests/unit/gl.h
+tests_unit_test_target_CFLAGS = $(GL_TEST_CFLAGS)
+tests_unit_test_target_LDADD = $(GL_TEST_LIBS)
+
+tests_unit_test_program_SOURCES = tests/unit/test_program.c tests/unit/unit.h tests/unit/gl.h
+tests_unit_test_program_CFLAGS = $(GL_TEST_CFLAGS)
+tests_unit_test_program_LDADD = $(GL_TEST_LIBS)

@@ -14,7 +14,7 @@ enum target_kind { TARGET_HEADLESS, TARGET_WINDOW, TARGET_FULLSCREEN };
 struct target_params {
 	enum target_kind kind;
 	const char *title;
-	const char *display; /* X display, NULL for the environment's */
+	const char *display; /* X display, NULL for the environment's; is put into the environment */
 	int width, height;   /* of the whole surface, both eyes of side-by-side included */
 	int gpu;             /* EGL device index, -1: the first that gives GL 4.5 */
 	int monitor;
@@ -25,13 +25,20 @@ struct target_params {
 struct target;
 /*
  * OpenGL 4.5 core or GR_ERR_UNSUPPORTED, with what was found in the log.
- * Headless tries EGL_EXT_platform_device, then EGL_MESA_platform_surfaceless.
+ * GR_ERR_RANGE for a GPU or monitor that is not there. Headless tries
+ * EGL_EXT_platform_device, then EGL_MESA_platform_surfaceless; a GPU that is
+ * named by number is not replaced by another.
  */
 int target_create(struct target **out, const struct target_params *params);
 void target_destroy(struct target **target);
 /* Framebuffer to draw the final picture of an eye into: 0 in a window, an RGBA8
  * FBO headless (readable after the frame). eye 1 differs only with quad_buffer. */
 unsigned target_framebuffer(const struct target *target, int eye);
+/*
+ * Binds that framebuffer for drawing (or for reading), and in a quad-buffered
+ * window chooses the eye's back buffer, which the framebuffer's name cannot say.
+ */
+void target_bind(const struct target *target, int eye, bool read);
 void target_size(const struct target *target, int *width, int *height);
 /* Shows what was drawn. Headless: nothing but GL_FLUSH. False when the window was closed. */
 bool target_swap(struct target *target);
