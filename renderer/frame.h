@@ -32,11 +32,15 @@ struct render_frame {
 	float absorption_per_m, scattering_per_m;
 	float exposure;
 	enum scene_curve curve;
-	float gamma_encode;
+	float gamma_encode; /* gamma_end_to_end / gamma_display, seed 004 section 3.3.6 */
 	bool srgb;
 };
 
-/* The frame that a scene file describes, before anything moves. */
+/*
+ * The frame that a scene file describes, before anything moves: head 1.7 m
+ * above the room's origin, eyes 65 mm apart; a lamp on an orbit is at the
+ * centre plus its radius along +x; lamps of wand and head are at the head.
+ */
 void render_frame_init(struct render_frame *frame, const struct scene_file *file);
 
 #endif

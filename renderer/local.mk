@@ -1,6 +1,6 @@
 # Fragments of the renderer: gl + scene + image, trace + gi, view + tone. Each adds
 # its sources to RENDERER_SOURCES and its GLSL files to SHADERS.
-RENDERER_SOURCES = renderer/renderer.h renderer/frame.h
+RENDERER_SOURCES = renderer/renderer.h renderer/frame.c renderer/frame.h
 
 include $(top_srcdir)/renderer/gl/local.mk
 include $(top_srcdir)/renderer/gi/local.mk

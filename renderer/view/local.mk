@@ -1,2 +1,2 @@
 # renderer/view, renderer/tone
-RENDERER_SOURCES += renderer/view/projection.h
+RENDERER_SOURCES += renderer/view/projection.c renderer/view/projection.h
