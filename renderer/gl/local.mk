@@ -1,9 +1,10 @@
 # renderer/gl, renderer/scene, renderer/image
 RENDERER_SOURCES += \
-	renderer/gl/mesh.h renderer/gl/program.c renderer/gl/program.h \
+	renderer/gl/mesh.c renderer/gl/mesh.h renderer/gl/program.c renderer/gl/program.h \
 	renderer/gl/shader_text.c renderer/gl/shader_text.h renderer/gl/shaders.h \
 	renderer/gl/target.c renderer/gl/target.h renderer/gl/target_egl.c \
-	renderer/gl/target_glfw.c renderer/gl/target_private.h renderer/gl/timer.h \
+	renderer/gl/target_glfw.c renderer/gl/target_private.h \
+	renderer/gl/timer.c renderer/gl/timer.h \
 	renderer/image/image.h \
 	renderer/scene/scene.h
 

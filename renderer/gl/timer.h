@@ -10,6 +10,8 @@
 #include <stdint.h>
 
 #define TIMER_STAGES 16
+/* How often a stage may run in one frame (once an eye); the times add up, more are not measured. */
+#define TIMER_SPANS 4
 
 struct timer_stats {
 	const char *name; /* NULL: unused */
@@ -20,10 +22,13 @@ struct timer_stats {
 struct timers;
 int timers_create(struct timers **out);
 void timers_destroy(struct timers **timers);
-/* Stages are known by index; the name is kept, not copied. May not nest. */
+/* Stages are known by index; the name is kept, not copied. A stage may not nest in itself. */
 void timers_begin(struct timers *timers, int stage, const char *name);
 void timers_end(struct timers *timers, int stage);
-/* At the end of a frame: collects what is ready, never waits. */
+/*
+ * At the end of a frame: collects what is ready, never waits. When the GPU is
+ * more than six frames behind, frames go unmeasured.
+ */
 void timers_frame(struct timers *timers);
 void timers_stats(const struct timers *timers, int stage, struct timer_stats *out);
 

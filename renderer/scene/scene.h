@@ -32,7 +32,8 @@ struct scene_material {
 	float specular[3]; /* reflectance 0..1; diffuse + specular <= 1 */
 	float shininess;   /* exponent m >= 0 */
 	float emission[3]; /* radiance, W/(m^2 sr); the unlit side of a one-sided surface emits none */
-	int diffuse_image; /* index into images, -1 for none; multiplies diffuse (and specular of metals) */
+	int diffuse_image; /* index into images, -1 for none; multiplies diffuse */
+	bool tinted_specular; /* a metal: diffuse_image multiplies specular, too */
 	int emission_image;
 	bool two_sided;
 };
