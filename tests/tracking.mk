@@ -1,1 +1,24 @@
 # tests of tracking
+check_PROGRAMS += tests/unit/test_tracking tests/unit/test_replay
+TESTS += tests/unit/test_tracking tests/unit/test_replay
+
+tests_unit_test_tracking_SOURCES = tests/unit/test_tracking.c tests/unit/unit.h
+tests_unit_test_tracking_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_tracking_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
+
+tests_unit_test_replay_SOURCES = tests/unit/test_replay.c tests/unit/unit.h
+tests_unit_test_replay_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_replay_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
+
+EXTRA_DIST += \
+	tests/fuzz/fuzz_replay.c \
+	tests/fuzz/corpus/replay/bad.log \
+	tests/fuzz/corpus/replay/good.log
+
+if FUZZERS
+noinst_PROGRAMS += tests/fuzz/fuzz_replay
+tests_fuzz_fuzz_replay_SOURCES = tests/fuzz/fuzz_replay.c
+tests_fuzz_fuzz_replay_CFLAGS = $(TEST_CFLAGS)
+tests_fuzz_fuzz_replay_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_replay_LDADD = $(TRACKING_LIBS)
+endif

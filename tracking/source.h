@@ -39,6 +39,7 @@ struct track_source_ops {
 	int (*fd)(const struct track_source *source);
 	/* When the next sample will be there (fd == -1), INT64_MAX when never. */
 	int64_t (*next)(const struct track_source *source, int64_t now_ns);
+	/* Frees the source itself as well. */
 	void (*destroy)(struct track_source *source);
 };
 
@@ -48,13 +49,19 @@ struct track_source {
 };
 
 int track_poll(struct track_source *source, int64_t now_ns, struct track_sample *out, int room);
+int track_fd(const struct track_source *source);
 int64_t track_next(const struct track_source *source, int64_t now_ns);
+/* "head", "wand". Never NULL. */
+const char *track_body_name(enum track_body body);
+/* *source may be NULL; it is after. */
 void track_source_destroy(struct track_source **source);
 
 /*
- * The recent past of each body. Fixed size, no allocation. A sample with a
- * bad pose, an older time than the last or a time more than 1 s ahead of now
- * is dropped and counted.
+ * The recent past of each body. Fixed size, no allocation. A valid sample with
+ * a bad pose (GR_ERR_FORMAT), and one of an unknown body, not newer than the
+ * last of its body or more than 1 s ahead of now (GR_ERR_RANGE) is dropped and
+ * counted. The pose of a sample that is not valid is never read; a run of such
+ * samples takes one place.
  */
 #define TRACK_HISTORY 64
 struct track_history {
@@ -67,10 +74,15 @@ int track_history_add(struct track_history *history, const struct track_sample *
 		      int64_t now_ns);
 
 /*
- * The pose at time_ns: between two samples mixed, after the last one
- * extrapolated with the last velocity for at most max_ahead_ns, then held.
- * False, and *out untouched, when the body was never seen. *tracked tells
- * whether the last sample was valid and younger than stale_ns.
+ * The pose at time_ns: between two samples mixed, before the oldest held,
+ * after the newest extrapolated for at most max_ahead_ns and held from there
+ * on. The velocity is a least-squares line through the last 50 ms, or through
+ * the last two samples where these lie further back. Samples that are not
+ * valid do not count but for their buttons; buttons do not mix.
+ *
+ * False, and *out and *tracked untouched, when the body was never seen.
+ * out->valid and *tracked (may be NULL) tell whether the last sample was valid
+ * and less than stale_ns older than time_ns.
  */
 bool track_history_at(const struct track_history *history, enum track_body body, int64_t time_ns,
 		      int64_t max_ahead_ns, int64_t stale_ns, struct track_sample *out,
