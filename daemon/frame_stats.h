@@ -1,0 +1,46 @@
+/*
+ * What the master measures of each frame: from its begin to SWAP on the wire
+ * and to the last node's report that it swapped, and how far apart the nodes
+ * swapped. Pure, fixed size.
+ *
+ * Skew is the spread of the nodes' own CLOCK_MONOTONIC at the swap. Processes
+ * of one machine share that clock, so on loopback the figure is exact; across
+ * machines it holds the clocks' offset and is not meaningful.
+ */
+#ifndef GROTTO_DAEMON_FRAME_STATS_H
+#define GROTTO_DAEMON_FRAME_STATS_H
+
+#include "daemon/histogram.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define FRAME_STATS_OPEN 8 /* frames whose reports may be under way at once */
+#define FRAME_STATS_NODES 64
+
+struct frame_open {
+	uint64_t frame; /* 0: unused */
+	int64_t begin_ns;
+	uint64_t expected, arrived; /* bit per node */
+	int64_t first_swap_ns, last_swap_ns; /* nodes' clocks */
+};
+
+struct frame_stats {
+	uint64_t begun, complete, incomplete; /* frames; all reports came, or not all */
+	struct histogram swap_sent, last_swapped, skew; /* us */
+	int64_t smoothed_swap_ns; /* begin to SWAP, running mean over about 8 frames; 0 before the first */
+	struct frame_open open[FRAME_STATS_OPEN];
+};
+
+void frame_stats_begin(struct frame_stats *stats, uint64_t frame, uint64_t expected,
+		       int64_t now_ns);
+void frame_stats_swap_sent(struct frame_stats *stats, uint64_t frame, int64_t now_ns);
+/* Node swapped `frame` at swap_local_ns of its clock; now_ns is the report's arrival. */
+void frame_stats_swapped(struct frame_stats *stats, unsigned node, uint64_t frame,
+			 int64_t swap_local_ns, int64_t now_ns);
+/* A node that will not report any more. */
+void frame_stats_gone(struct frame_stats *stats, unsigned node);
+/* All reports of `frame` are in (or it was never begun). */
+bool frame_stats_settled(const struct frame_stats *stats, uint64_t frame);
+
+#endif

@@ -1,0 +1,418 @@
+#include "config.h" /* _GNU_SOURCE */
+
+#include "daemon/socket.h"
+
+#include "base/log.h"
+#include "base/result.h"
+
+#include <errno.h>
+#include <net/if.h>
+#include <netdb.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+#define NET_QUEUE 64
+#define NET_BATCH 16
+#define NET_BUFFER (4 << 20)
+
+struct net {
+	int fd;       /* bound to our address */
+	int group_fd; /* node: bound to the group's port, or -1 */
+	bool has_group;
+	struct net_address group;
+	struct net_address peers[LAYOUT_MAX_NODES]; /* master: nodes; node: [0] the master */
+	size_t peer_count;
+	size_t datagram_max;
+	struct net_stats stats;
+
+	struct mmsghdr out[NET_QUEUE];
+	struct iovec out_iov[NET_QUEUE];
+	struct net_address out_to[NET_QUEUE];
+	uint8_t *out_bytes; /* NET_QUEUE * datagram_max */
+	unsigned queued;
+
+	struct mmsghdr in[NET_BATCH];
+	struct iovec in_iov[NET_BATCH];
+	struct net_address in_from[NET_BATCH];
+	uint8_t *in_bytes; /* NET_BATCH * datagram_max */
+};
+
+int net_address_parse(const char *text, uint16_t port, struct net_address *out)
+{
+	struct addrinfo hints = { .ai_flags = AI_NUMERICHOST | AI_NUMERICSERV | AI_PASSIVE,
+				  .ai_socktype = SOCK_DGRAM };
+	struct addrinfo *found = NULL;
+	char service[8];
+
+	memset(out, 0, sizeof *out);
+	snprintf(service, sizeof service, "%u", port);
+	if (!text || getaddrinfo(text, service, &hints, &found) != 0)
+		return GR_ERR_FORMAT;
+	memcpy(&out->sa, found->ai_addr, found->ai_addrlen);
+	out->len = found->ai_addrlen;
+	freeaddrinfo(found);
+	return GR_OK;
+}
+
+void net_address_text(const struct net_address *address, char text[NET_ADDRESS_TEXT])
+{
+	char host[48], service[8];
+
+	if (getnameinfo((const struct sockaddr *)&address->sa, address->len, host, sizeof host,
+			service, sizeof service, NI_NUMERICHOST | NI_NUMERICSERV) != 0)
+		snprintf(text, NET_ADDRESS_TEXT, "unknown address");
+	else if (address->sa.ss_family == AF_INET6)
+		snprintf(text, NET_ADDRESS_TEXT, "[%s]:%s", host, service);
+	else
+		snprintf(text, NET_ADDRESS_TEXT, "%s:%s", host, service);
+}
+
+bool net_address_equal(const struct net_address *a, const struct net_address *b)
+{
+	if (a->sa.ss_family != b->sa.ss_family)
+		return false;
+	if (a->sa.ss_family == AF_INET) {
+		const struct sockaddr_in *x = (const void *)&a->sa, *y = (const void *)&b->sa;
+		return x->sin_port == y->sin_port && x->sin_addr.s_addr == y->sin_addr.s_addr;
+	}
+	const struct sockaddr_in6 *x = (const void *)&a->sa, *y = (const void *)&b->sa;
+	return x->sin6_port == y->sin6_port && x->sin6_scope_id == y->sin6_scope_id &&
+	       !memcmp(&x->sin6_addr, &y->sin6_addr, sizeof x->sin6_addr);
+}
+
+size_t net_datagram_max(const struct layout_network *network)
+{
+	size_t headers = strchr(network->master_address, ':') ? 48 : 28;
+
+	return (size_t)network->mtu > headers ? (size_t)network->mtu - headers : 0;
+}
+
+static void say(const char *what, const struct net_address *address)
+{
+	char text[NET_ADDRESS_TEXT];
+
+	net_address_text(address, text);
+	gr_error("UDP %s: %s: %s", text, what, strerror(errno));
+}
+
+static void set_option(int fd, int level, int name, int value)
+{
+	/* Options that make it better but are not needed to work. */
+	if (setsockopt(fd, level, name, &value, sizeof value) < 0)
+		gr_debug("socket option %d/%d: %s", level, name, strerror(errno));
+}
+
+static void set_buffers(int fd)
+{
+	int size = NET_BUFFER;
+
+	/* FORCE passes net.core.rmem_max, but needs CAP_NET_ADMIN. */
+	if (setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) < 0)
+		set_option(fd, SOL_SOCKET, SO_RCVBUF, size);
+	if (setsockopt(fd, SOL_SOCKET, SO_SNDBUFFORCE, &size, sizeof size) < 0)
+		set_option(fd, SOL_SOCKET, SO_SNDBUF, size);
+}
+
+static int open_bound(const struct net_address *address, bool shared)
+{
+	int one = 1;
+	int fd = socket(address->sa.ss_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+
+	if (fd < 0) {
+		say("no socket", address);
+		return -1;
+	}
+	set_buffers(fd);
+	set_option(fd, SOL_SOCKET, SO_PRIORITY, 6);
+	/* A datagram over the path's MTU is refused here, not cut up unseen. */
+	if (address->sa.ss_family == AF_INET6)
+		set_option(fd, IPPROTO_IPV6, IPV6_MTU_DISCOVER, IPV6_PMTUDISC_DO);
+	else
+		set_option(fd, IPPROTO_IP, IP_MTU_DISCOVER, IP_PMTUDISC_DO);
+	if ((shared && setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &one, sizeof one) < 0) ||
+	    bind(fd, (const struct sockaddr *)&address->sa, address->len) < 0) {
+		say("cannot be opened (is another daemon on it, is it an address of this machine?)",
+		    address);
+		close(fd);
+		return -1;
+	}
+	return fd;
+}
+
+static int interface_index(const struct layout_network *network, unsigned *out)
+{
+	*out = 0;
+	if (!network->interface)
+		return GR_OK;
+	*out = if_nametoindex(network->interface);
+	if (*out == 0) {
+		gr_error("network interface '%s': %s; `ip link` lists them", network->interface,
+			 strerror(errno));
+		return GR_ERR_CONFIG;
+	}
+	return GR_OK;
+}
+
+/* Master: where group datagrams leave, how far they go, and that they are heard here too. */
+static int set_group_out(struct net *net, const struct layout_network *network)
+{
+	int family = net->group.sa.ss_family, one = 1, r;
+	unsigned index;
+	bool ok;
+
+	r = interface_index(network, &index);
+	if (r < 0)
+		return r;
+	if (network->cast == LAYOUT_BROADCAST) {
+		ok = setsockopt(net->fd, SOL_SOCKET, SO_BROADCAST, &one, sizeof one) == 0;
+	} else if (family == AF_INET6) {
+		ok = setsockopt(net->fd, IPPROTO_IPV6, IPV6_MULTICAST_IF, &index, sizeof index) == 0 &&
+		     setsockopt(net->fd, IPPROTO_IPV6, IPV6_MULTICAST_HOPS, &network->ttl,
+				sizeof network->ttl) == 0 &&
+		     setsockopt(net->fd, IPPROTO_IPV6, IPV6_MULTICAST_LOOP, &one, sizeof one) == 0;
+	} else {
+		struct ip_mreqn where = { .imr_ifindex = (int)index };
+		ok = setsockopt(net->fd, IPPROTO_IP, IP_MULTICAST_IF, &where, sizeof where) == 0 &&
+		     setsockopt(net->fd, IPPROTO_IP, IP_MULTICAST_TTL, &network->ttl,
+				sizeof network->ttl) == 0 &&
+		     setsockopt(net->fd, IPPROTO_IP, IP_MULTICAST_LOOP, &one, sizeof one) == 0;
+	}
+	if (!ok) {
+		say("group cannot be sent to", &net->group);
+		return GR_ERR_IO;
+	}
+	return GR_OK;
+}
+
+/* Node: a socket of its own on the group's address, so that it hears nothing else. */
+static int join_group(struct net *net, const struct layout_network *network)
+{
+	struct group_req request = { 0 };
+	int level = net->group.sa.ss_family == AF_INET6 ? IPPROTO_IPV6 : IPPROTO_IP, r;
+	unsigned index;
+
+	r = interface_index(network, &index);
+	if (r < 0)
+		return r;
+	net->group_fd = open_bound(&net->group, true);
+	if (net->group_fd < 0)
+		return GR_ERR_IO;
+	if (network->cast == LAYOUT_BROADCAST)
+		return GR_OK;
+	request.gr_interface = index;
+	memcpy(&request.gr_group, &net->group.sa, net->group.len);
+	if (setsockopt(net->group_fd, level, MCAST_JOIN_GROUP, &request, sizeof request) < 0) {
+		say("group cannot be joined", &net->group);
+		return GR_ERR_IO;
+	}
+	/* Only groups that this socket joined, not those of others on this machine. */
+	set_option(net->group_fd, level, level == IPPROTO_IP ? IP_MULTICAST_ALL : IPV6_MULTICAST_ALL, 0);
+	return GR_OK;
+}
+
+static int parse_or_say(const char *text, uint16_t port, struct net_address *out)
+{
+	int r = net_address_parse(text, port, out);
+
+	if (r < 0)
+		gr_error("'%s' is not a numeric IPv4 or IPv6 address", text ? text : "");
+	return r < 0 ? GR_ERR_CONFIG : GR_OK;
+}
+
+static void prepare_messages(struct net *net)
+{
+	for (int i = 0; i < NET_QUEUE; i++) {
+		net->out_iov[i].iov_base = net->out_bytes + (size_t)i * net->datagram_max;
+		net->out[i].msg_hdr = (struct msghdr){ .msg_name = &net->out_to[i].sa,
+						       .msg_iov = &net->out_iov[i],
+						       .msg_iovlen = 1 };
+	}
+	for (int i = 0; i < NET_BATCH; i++) {
+		net->in_iov[i] = (struct iovec){ net->in_bytes + (size_t)i * net->datagram_max,
+						 net->datagram_max };
+		net->in[i].msg_hdr = (struct msghdr){ .msg_name = &net->in_from[i].sa,
+						      .msg_iov = &net->in_iov[i],
+						      .msg_iovlen = 1 };
+	}
+}
+
+static int net_new(struct net **out, const struct layout_network *network)
+{
+	struct net *net = calloc(1, sizeof *net);
+
+	*out = NULL;
+	if (!net)
+		return GR_ERR_NOMEM;
+	net->fd = net->group_fd = -1;
+	net->datagram_max = net_datagram_max(network);
+	net->has_group = network->cast != LAYOUT_UNICAST;
+	net->out_bytes = malloc(NET_QUEUE * net->datagram_max + 1);
+	net->in_bytes = malloc(NET_BATCH * net->datagram_max + 1);
+	*out = net;
+	if (!net->out_bytes || !net->in_bytes) {
+		net_close(out);
+		return GR_ERR_NOMEM;
+	}
+	prepare_messages(net);
+	if (net->has_group && parse_or_say(network->group, network->group_port, &net->group) < 0) {
+		net_close(out);
+		return GR_ERR_CONFIG;
+	}
+	return GR_OK;
+}
+
+int net_open_master(struct net **out, const struct layout *layout)
+{
+	const struct layout_network *network = &layout->network;
+	struct net_address own;
+	int r = net_new(out, network);
+
+	if (r < 0)
+		return r;
+	r = parse_or_say(network->master_address, network->master_port, &own);
+	(*out)->peer_count = layout->node_count < LAYOUT_MAX_NODES ? layout->node_count : LAYOUT_MAX_NODES;
+	for (size_t i = 0; r == GR_OK && i < (*out)->peer_count; i++)
+		r = parse_or_say(layout->nodes[i].address, layout->nodes[i].port, &(*out)->peers[i]);
+	if (r == GR_OK && ((*out)->fd = open_bound(&own, false)) < 0)
+		r = GR_ERR_IO;
+	if (r == GR_OK && (*out)->has_group)
+		r = set_group_out(*out, network);
+	if (r < 0)
+		net_close(out);
+	return r;
+}
+
+int net_open_node(struct net **out, const struct layout *layout, size_t index)
+{
+	const struct layout_network *network = &layout->network;
+	struct net_address own;
+	int r = net_new(out, network);
+
+	if (r < 0)
+		return r;
+	(*out)->peer_count = 1;
+	r = parse_or_say(network->master_address, network->master_port, &(*out)->peers[0]);
+	if (r == GR_OK)
+		r = parse_or_say(layout->nodes[index].address, layout->nodes[index].port, &own);
+	if (r == GR_OK && ((*out)->fd = open_bound(&own, false)) < 0)
+		r = GR_ERR_IO;
+	if (r == GR_OK && (*out)->has_group)
+		r = join_group(*out, network);
+	if (r < 0)
+		net_close(out);
+	return r;
+}
+
+void net_close(struct net **net)
+{
+	struct net *n = *net;
+
+	if (!n)
+		return;
+	if (n->fd >= 0)
+		close(n->fd);
+	if (n->group_fd >= 0)
+		close(n->group_fd);
+	free(n->out_bytes);
+	free(n->in_bytes);
+	free(n);
+	*net = NULL;
+}
+
+int net_fds(const struct net *net, int fds[2])
+{
+	fds[0] = net->fd;
+	fds[1] = net->group_fd;
+	return net->group_fd >= 0 ? 2 : 1;
+}
+
+void net_stats(const struct net *net, struct net_stats *out)
+{
+	*out = net->stats;
+}
+
+static void queue(struct net *net, const struct net_address *to, const uint8_t *bytes, size_t len)
+{
+	unsigned i;
+
+	if (net->queued == NET_QUEUE)
+		net_flush(net);
+	i = net->queued++;
+	memcpy(net->out_iov[i].iov_base, bytes, len);
+	net->out_iov[i].iov_len = len;
+	net->out_to[i] = *to;
+	net->out[i].msg_hdr.msg_namelen = to->len;
+}
+
+void net_send(struct net *net, int to, uint64_t wanted, const uint8_t *bytes, size_t len)
+{
+	if (len > net->datagram_max) {
+		net->stats.send_failed++;
+		net->stats.send_errno = EMSGSIZE;
+		return;
+	}
+	if (to >= 0 && (size_t)to < net->peer_count) {
+		queue(net, &net->peers[to], bytes, len);
+	} else if (to < 0 && net->has_group) {
+		queue(net, &net->group, bytes, len);
+	} else if (to < 0) {
+		for (size_t i = 0; i < net->peer_count; i++)
+			if (wanted >> i & 1)
+				queue(net, &net->peers[i], bytes, len);
+	}
+}
+
+void net_flush(struct net *net)
+{
+	unsigned done = 0;
+
+	while (done < net->queued) {
+		int n = sendmmsg(net->fd, net->out + done, net->queued - done, MSG_NOSIGNAL);
+
+		if (n > 0) {
+			done += (unsigned)n;
+			net->stats.sent += (uint64_t)n;
+		} else if (n < 0 && errno != EINTR) {
+			/* Full buffer, no route, a node that is not there: this one is lost. */
+			net->stats.send_failed++;
+			net->stats.send_errno = errno;
+			done++;
+		}
+	}
+	net->queued = 0;
+}
+
+void net_learn(struct net *net, int node, const struct net_address *from)
+{
+	if (node >= 0 && (size_t)node < net->peer_count && !net_address_equal(&net->peers[node], from))
+		net->peers[node] = *from;
+}
+
+int net_receive(struct net *net, int fd, int most, net_receive_fn fn, void *ctx)
+{
+	int taken = 0;
+
+	while (taken < most) {
+		int room = most - taken < NET_BATCH ? most - taken : NET_BATCH, n;
+
+		for (int i = 0; i < room; i++)
+			net->in[i].msg_hdr.msg_namelen = sizeof net->in_from[i].sa;
+		n = recvmmsg(fd, net->in, (unsigned)room, MSG_DONTWAIT, NULL);
+		if (n <= 0)
+			break; /* nothing left, or an error that the next event reports again */
+		for (int i = 0; i < n; i++) {
+			net->in_from[i].len = net->in[i].msg_hdr.msg_namelen;
+			if (net->in[i].msg_hdr.msg_flags & MSG_TRUNC)
+				net->stats.oversized++;
+			else
+				fn(ctx, net->in_iov[i].iov_base, net->in[i].msg_len, &net->in_from[i]);
+		}
+		taken += n;
+		if (n < room)
+			break;
+	}
+	return taken;
+}

@@ -1,0 +1,71 @@
+/*
+ * The UDP sockets of a room, as the layout's network section says: the
+ * master's fans out to all nodes (unicast, one send for all by multicast or
+ * broadcast), a node's speaks to its master.
+ *
+ * Sends are queued and leave in batches (sendmmsg); datagrams arrive in
+ * batches (recvmmsg) into fixed buffers. Nothing is allocated after opening.
+ * Lost sends are counted, not retried: the protocol repairs.
+ *
+ * Thread: the loop's.
+ */
+#ifndef GROTTO_DAEMON_SOCKET_H
+#define GROTTO_DAEMON_SOCKET_H
+
+#include "config/layout.h"
+
+#include <netinet/in.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <sys/socket.h>
+
+#define NET_ADDRESS_TEXT 64
+
+struct net_address {
+	struct sockaddr_storage sa;
+	socklen_t len;
+};
+
+/* Numeric IPv4 or IPv6 (with %scope); GR_ERR_FORMAT otherwise. */
+int net_address_parse(const char *text, uint16_t port, struct net_address *out);
+/* "10.0.0.1:4400" or "[fe80::1%3]:4400" */
+void net_address_text(const struct net_address *address, char text[NET_ADDRESS_TEXT]);
+bool net_address_equal(const struct net_address *a, const struct net_address *b);
+
+/* UDP payload that fits the layout's MTU: less the IP header (20, IPv6 40) and UDP's 8. */
+size_t net_datagram_max(const struct layout_network *network);
+
+struct net_stats {
+	uint64_t sent, send_failed; /* datagrams on the wire; refused by the system */
+	uint64_t oversized;         /* arrived longer than the layout allows */
+	int send_errno;             /* of the last failure */
+};
+
+struct net;
+/* The master's socket, on master_address:master_port. The log names what fails. */
+int net_open_master(struct net **out, const struct layout *layout);
+/* Node `index`'s sockets: its own port, and the group's where there is one. */
+int net_open_node(struct net **out, const struct layout *layout, size_t index);
+void net_close(struct net **net);
+
+/* Descriptors to wait on; count 1 or 2. */
+int net_fds(const struct net *net, int fds[2]);
+void net_stats(const struct net *net, struct net_stats *out);
+
+/*
+ * Master: queues a datagram to node `to`, or with -1 to all: once to the
+ * group, or to each node for which `wanted` bit is set when there is none.
+ * Node: `to` is 0, its master. net_flush sends the queue.
+ */
+void net_send(struct net *net, int to, uint64_t wanted, const uint8_t *bytes, size_t len);
+void net_flush(struct net *net);
+/* Master: node `node` was heard, authentically, from there. */
+void net_learn(struct net *net, int node, const struct net_address *from);
+
+typedef void (*net_receive_fn)(void *ctx, const uint8_t *bytes, size_t len,
+			       const struct net_address *from);
+/* Takes what waits at fd, at most `most` datagrams; returns how many. */
+int net_receive(struct net *net, int fd, int most, net_receive_fn fn, void *ctx);
+
+#endif
