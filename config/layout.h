@@ -18,6 +18,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #define LAYOUT_NAME_MAX 32 /* with the final NUL */
 #define LAYOUT_MAX_NODES 64
@@ -122,7 +123,10 @@ struct layout {
 	float eye_separation_m;
 	vec3 room_min, room_max; /* where eyes may be; from the walls unless given */
 	char *control_socket;    /* path of the master's control socket */
-	uint8_t hash[32];        /* BLAKE2b of the canonical form; nodes compare it at join */
+	uint8_t hash[32];        /* see layout_hash; nodes compare it at join */
+	vec3 start_head_angles;  /* as the file gives them: heading, pitch, roll; radians */
+	vec3 start_wand_angles;
+	bool room_given;         /* room_min and room_max are the file's own */
 };
 
 /*
@@ -131,7 +135,24 @@ struct layout {
  * GR_ERR_NOMEM: *out is NULL then.
  */
 int layout_load(const char *path, struct layout **out, struct gr_diag *diag);
+/* The same from memory; path stands in messages and for what is relative to it. */
+int layout_parse(const char *text, size_t len, const char *path, struct layout **out,
+		 struct gr_diag *diag);
 void layout_destroy(struct layout **layout);
+
+/*
+ * Writes a layout as a file that loads to the same values (walls by their
+ * corners, comments lost). GR_OK, GR_ERR_IO, GR_ERR_NOMEM.
+ */
+int layout_write(FILE *file, const struct layout *layout);
+/*
+ * BLAKE2b-256 of the canonical form of what all machines of a room must agree
+ * on: walls, nodes (name, wall, part, address, port, eyes), network, rates,
+ * start, room, eye separation. Not of paths, comments, the key file, the
+ * trackers and the control socket (the master's own), nor of target, display,
+ * monitor and gpu (one node's own). layout_load has stored it in hash.
+ */
+void layout_hash(const struct layout *layout, uint8_t out[32]);
 
 /* Index of the node of that name, or -1. */
 int layout_find_node(const struct layout *layout, const char *name);

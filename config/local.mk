@@ -1,5 +1,18 @@
 noinst_LIBRARIES += config/libgconfig.a
 config_libgconfig_a_SOURCES = \
-	config/layout.h \
-	config/scene_file.h
+	config/address.c config/address.h \
+	config/canonical.c config/canonical.h \
+	config/config_text.c config/config_text.h \
+	config/layout.c config/layout.h \
+	config/layout_check.c config/layout_check.h \
+	config/layout_check_network.c \
+	config/layout_check_nodes.c \
+	config/layout_check_room.c \
+	config/layout_check_walls.c \
+	config/layout_options.c config/layout_options.h \
+	config/options.c config/options.h \
+	config/scene_check.c \
+	config/scene_file.c config/scene_file.h \
+	config/scene_options.c config/scene_options.h \
+	config/suggest.c config/suggest.h
 config_libgconfig_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(LIBCONFIG_CFLAGS) $(SODIUM_CFLAGS)

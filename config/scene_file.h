@@ -16,6 +16,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #define SCENE_NAME_MAX 32
 #define SCENE_MAX_LAMPS 16
@@ -98,15 +99,30 @@ struct scene_file {
 	int shadow_pixels;
 	struct gr_pose room; /* T_scene_room: where the CAVE stands in the scene */
 	bool double_sided;   /* treat every material as two-sided */
-	uint8_t hash[32];    /* BLAKE2b of the canonical form; the model's content is hashed by the renderer */
+	uint8_t hash[32];    /* see scene_file_hash; the model's content is hashed by the renderer */
+	float emission_scale; /* radiance in W/(m^2 sr) of a material whose emission is 1 */
+	float room_heading_rad; /* as the file gives it; room.q follows from it */
 };
 
 /* As layout_load. */
 int scene_file_load(const char *path, struct scene_file **out, struct gr_diag *diag);
+/* The same from memory; path stands in messages and for what is relative to it. */
+int scene_file_parse(const char *text, size_t len, const char *path, struct scene_file **out,
+		     struct gr_diag *diag);
 void scene_file_destroy(struct scene_file **file);
 /* The model's path as it can be opened. Caller frees. */
 char *scene_file_model_path(const struct scene_file *file);
 /* Index of the camera of that name, or -1. */
 int scene_file_find_camera(const struct scene_file *file, const char *name);
+/* Exponent of the encoding: end-to-end gamma / display gamma (seed 004, before table 3.1). */
+float scene_tone_gamma_encode(const struct scene_tone *tone);
+
+/* Writes a file that loads to the same values. GR_OK, GR_ERR_IO, GR_ERR_NOMEM. */
+int scene_file_write(FILE *out, const struct scene_file *file);
+/*
+ * BLAKE2b-256 of the canonical form of what all machines must agree on:
+ * everything but name, paths and cameras. scene_file_load has stored it in hash.
+ */
+void scene_file_hash(const struct scene_file *file, uint8_t out[32]);
 
 #endif

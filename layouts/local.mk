@@ -1,1 +1,3 @@
-# What layouts/ adds to the build.
+# Example layouts, installed to $(pkgdatadir)/layouts.
+layoutsdir = $(pkgdatadir)/layouts
+dist_layouts_DATA = layouts/cave4.cave

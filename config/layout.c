@@ -1,0 +1,272 @@
+#include "config/layout.h"
+
+#include "base/result.h"
+#include "config/canonical.h"
+#include "config/config_text.h"
+#include "config/layout_check.h"
+#include "config/layout_options.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Moves an owned string out of the file's form. */
+static char *take(char **from)
+{
+	char *text = *from;
+
+	*from = NULL;
+	return text;
+}
+
+/* heading about +Y, then pitch about the turned X, then roll about the line of sight. */
+static void pose_from_angles(const vec3 position, const vec3 angles, struct gr_pose *out)
+{
+	struct gr_pose pitch = GR_POSE_IDENTITY, roll = GR_POSE_IDENTITY;
+
+	gr_pose_heading(position, angles[0], out);
+	pitch.q[0] = sinf(angles[1] * 0.5f);
+	pitch.q[3] = cosf(angles[1] * 0.5f);
+	roll.q[2] = sinf(angles[2] * 0.5f);
+	roll.q[3] = cosf(angles[2] * 0.5f);
+	gr_pose_mul(out, &pitch, out);
+	gr_pose_mul(out, &roll, out);
+}
+
+static void build_walls(struct layout *layout, struct layout_file *file)
+{
+	for (size_t w = 0; w < file->wall_count; w++) {
+		struct layout_file_wall *from = &file->walls[w];
+		struct layout_wall *wall = &layout->walls[w];
+
+		memcpy(wall->name, from->name, sizeof wall->name);
+		glm_vec3_copy(from->lower_left, wall->lower_left);
+		glm_vec3_copy(from->lower_right, wall->lower_right);
+		glm_vec3_copy(from->upper_left, wall->upper_left);
+		memcpy(wall->pixels, from->pixels, sizeof wall->pixels);
+		wall->line = (int)config_setting_source_line(from->at);
+		for (size_t n = 0; n < from->node_count; n++) {
+			struct layout_node *node = &layout->nodes[layout->node_count++];
+
+			*node = from->nodes[n].node;
+			node->address = take(&from->nodes[n].node.address);
+			node->display = take(&from->nodes[n].node.display);
+			node->wall = w;
+			node->line = (int)config_setting_source_line(from->nodes[n].at);
+		}
+	}
+	layout->wall_count = file->wall_count;
+}
+
+static void build_rest(struct layout *layout, struct layout_file *file)
+{
+	struct layout_network *network = &file->network.network;
+
+	memcpy(layout->name, file->name, sizeof layout->name);
+	layout->network = *network;
+	layout->network.interface = take(&network->interface);
+	layout->network.master_address = take(&network->master_address);
+	layout->network.group = take(&network->group);
+	layout->network.key_file = take(&network->key_file);
+	layout->rates = file->rates.rates;
+	for (size_t i = 0; i < file->tracker_count; i++) {
+		layout->trackers[i] = file->trackers[i].tracker;
+		layout->trackers[i].file = take(&file->trackers[i].tracker.file);
+		layout->trackers[i].sim = file->trackers[i].sim.sim;
+		layout->trackers[i].line = (int)config_setting_source_line(file->trackers[i].at);
+	}
+	layout->tracker_count = file->tracker_count;
+	glm_vec3_copy(file->start.head_angles, layout->start_head_angles);
+	glm_vec3_copy(file->start.wand_angles, layout->start_wand_angles);
+	pose_from_angles(file->start.head, file->start.head_angles, &layout->start_head);
+	pose_from_angles(file->start.wand, file->start.wand_angles, &layout->start_wand);
+	layout->eye_separation_m = file->eye_separation_m;
+	glm_vec3_copy(file->room.min, layout->room_min);
+	glm_vec3_copy(file->room.max, layout->room_max);
+	layout->room_given = file->room.at != NULL;
+	layout->control_socket = take(&file->control_socket);
+}
+
+/* From a file's form without faults; its strings move over. */
+static struct layout *build(struct layout_file *file, const char *path)
+{
+	struct layout *layout = calloc(1, sizeof *layout);
+	size_t nodes = 0;
+
+	if (!layout)
+		return NULL;
+	for (size_t w = 0; w < file->wall_count; w++)
+		nodes += file->walls[w].node_count;
+	layout->path = strdup(path);
+	layout->walls = calloc(file->wall_count, sizeof *layout->walls);
+	layout->nodes = calloc(nodes, sizeof *layout->nodes);
+	layout->trackers = calloc(file->tracker_count + 1, sizeof *layout->trackers);
+	if (!layout->path || !layout->walls || !layout->nodes || !layout->trackers) {
+		layout_destroy(&layout);
+		return NULL;
+	}
+	build_walls(layout, file);
+	build_rest(layout, file);
+	layout_hash(layout, layout->hash);
+	return layout;
+}
+
+int layout_parse(const char *text, size_t len, const char *path, struct layout **out,
+		 struct gr_diag *diag)
+{
+	struct options_reader reader = { .file = path, .diag = diag };
+	struct layout_file file = { 0 };
+	config_t config;
+	int result;
+
+	*out = NULL;
+	if (sodium_init() < 0)
+		return GR_ERR_UNSUPPORTED;
+	result = config_text_parse(text, len, path, &config, diag);
+	if (result < 0)
+		return result;
+	reader.root = config_root_setting(&config);
+	options_read(&reader, layout_options, reader.root, &file);
+	if (!reader.nomem)
+		layout_check(&reader, &file);
+	if (reader.nomem)
+		result = GR_ERR_NOMEM;
+	else if (reader.faults)
+		result = GR_ERR_CONFIG;
+	else if (!(*out = build(&file, path)))
+		result = GR_ERR_NOMEM;
+	options_free(layout_options, &file);
+	config_destroy(&config);
+	return result;
+}
+
+int layout_load(const char *path, struct layout **out, struct gr_diag *diag)
+{
+	char *text;
+	size_t len;
+	int result = config_text_load(path, &text, &len, diag);
+
+	*out = NULL;
+	if (result < 0)
+		return result;
+	result = layout_parse(text, len, path, out, diag);
+	free(text);
+	return result;
+}
+
+void layout_destroy(struct layout **layout)
+{
+	struct layout *l = *layout;
+
+	if (!l)
+		return;
+	for (size_t i = 0; i < l->node_count; i++) {
+		free(l->nodes[i].address);
+		free(l->nodes[i].display);
+	}
+	for (size_t i = 0; i < l->tracker_count; i++)
+		free(l->trackers[i].file);
+	free(l->nodes);
+	free(l->walls);
+	free(l->trackers);
+	free(l->network.interface);
+	free(l->network.master_address);
+	free(l->network.group);
+	free(l->network.key_file);
+	free(l->control_socket);
+	free(l->path);
+	free(l);
+	*layout = NULL;
+}
+
+int layout_find_node(const struct layout *layout, const char *name)
+{
+	for (size_t i = 0; i < layout->node_count; i++)
+		if (!strcmp(layout->nodes[i].name, name))
+			return (int)i;
+	return -1;
+}
+
+void layout_node_corners(const struct layout *layout, size_t node, vec3 lower_left,
+			 vec3 lower_right, vec3 upper_left)
+{
+	const float *part = layout->nodes[node].part;
+	const struct layout_wall *wall = &layout->walls[layout->nodes[node].wall];
+
+	for (int i = 0; i < 3; i++) {
+		double o = wall->lower_left[i];
+		double x = wall->lower_right[i] - o, y = wall->upper_left[i] - o;
+
+		lower_left[i] = (float)(o + part[0] * x + part[1] * y);
+		lower_right[i] = (float)(o + part[2] * x + part[1] * y);
+		upper_left[i] = (float)(o + part[0] * x + part[3] * y);
+	}
+}
+
+void layout_node_pixels(const struct layout *layout, size_t node, int pixels[2])
+{
+	const float *part = layout->nodes[node].part;
+	const struct layout_wall *wall = &layout->walls[layout->nodes[node].wall];
+
+	/* Rounded edge by edge, so that the parts of a wall add up to the whole. */
+	for (int i = 0; i < 2; i++)
+		pixels[i] = (int)(lround((double)part[i + 2] * wall->pixels[i]) -
+				  lround((double)part[i] * wall->pixels[i]));
+}
+
+char *layout_key_path(const struct layout *layout)
+{
+	if (!layout->network.key_file)
+		return NULL;
+	return config_text_beside(layout->path, layout->network.key_file);
+}
+
+void layout_hash(const struct layout *layout, uint8_t out[32])
+{
+	const struct layout_network *network = &layout->network;
+	const struct layout_rates *rates = &layout->rates;
+	struct canonical c;
+
+	canonical_start(&c, "grotto layout 1");
+	canonical_u64(&c, layout->wall_count);
+	for (size_t i = 0; i < layout->wall_count; i++) {
+		const struct layout_wall *wall = &layout->walls[i];
+
+		canonical_string(&c, wall->name);
+		canonical_floats(&c, wall->lower_left, 3);
+		canonical_floats(&c, wall->lower_right, 3);
+		canonical_floats(&c, wall->upper_left, 3);
+		canonical_u64(&c, (uint64_t)wall->pixels[0]);
+		canonical_u64(&c, (uint64_t)wall->pixels[1]);
+	}
+	canonical_u64(&c, layout->node_count);
+	for (size_t i = 0; i < layout->node_count; i++) {
+		const struct layout_node *node = &layout->nodes[i];
+
+		canonical_string(&c, node->name);
+		canonical_u64(&c, node->wall);
+		canonical_floats(&c, node->part, 4);
+		canonical_string(&c, node->address);
+		canonical_u64(&c, node->port);
+		canonical_u64(&c, node->eyes);
+	}
+	canonical_u64(&c, network->cast);
+	canonical_string(&c, network->master_address);
+	canonical_u64(&c, network->master_port);
+	canonical_string(&c, network->group);
+	canonical_u64(&c, network->group_port);
+	canonical_u64(&c, (uint64_t)network->ttl);
+	canonical_u64(&c, (uint64_t)network->mtu);
+	canonical_floats(&c, &rates->frame_hz, 1);
+	canonical_u64(&c, (uint64_t)rates->barrier_deadline_ns);
+	canonical_u64(&c, (uint64_t)rates->evict_frames);
+	canonical_u64(&c, (uint64_t)rates->display_latency_ns);
+	canonical_floats(&c, &layout->eye_separation_m, 1);
+	canonical_floats(&c, layout->start_head.p, 3);
+	canonical_floats(&c, layout->start_head_angles, 3);
+	canonical_floats(&c, layout->start_wand.p, 3);
+	canonical_floats(&c, layout->start_wand_angles, 3);
+	canonical_floats(&c, layout->room_min, 3);
+	canonical_floats(&c, layout->room_max, 3);
+	canonical_finish(&c, out);
+}

@@ -1,0 +1,84 @@
+#include "config/layout_check.h"
+
+#include <string.h>
+#include <sys/un.h>
+
+static void check_wall_names(struct options_reader *reader, struct layout_file *file)
+{
+	for (size_t i = 0; i < file->wall_count; i++)
+		for (size_t j = 0; j < i; j++)
+			if (file->walls[i].name[0] && !strcmp(file->walls[i].name, file->walls[j].name))
+				options_fault(reader, GR_DIAG_ERROR, file->walls[i].at, "name",
+					      "wall \"%s\" is there twice; each wall needs a name of its own",
+					      file->walls[i].name);
+}
+
+static void check_tracker(struct options_reader *reader, const struct layout_file *file, size_t i)
+{
+	const struct layout_file_tracker *entry = &file->trackers[i];
+	const struct layout_tracker *tracker = &entry->tracker;
+
+	if (!entry->at)
+		return;
+	for (size_t j = 0; j < i; j++) {
+		const struct layout_tracker *other = &file->trackers[j].tracker;
+
+		if (!file->trackers[j].at)
+			continue;
+		if (tracker->name[0] && !strcmp(tracker->name, other->name))
+			options_fault(reader, GR_DIAG_ERROR, entry->at, "name",
+				      "tracker \"%s\" is there twice; each needs a name of its own",
+				      tracker->name);
+		if (tracker->head && other->head)
+			options_fault(reader, GR_DIAG_ERROR, entry->at, "head",
+				      "tracker \"%s\" tracks the head already; say head = false in one",
+				      other->name);
+		if (tracker->wand && other->wand)
+			options_fault(reader, GR_DIAG_ERROR, entry->at, "wand",
+				      "tracker \"%s\" tracks the wand already; say wand = false in one",
+				      other->name);
+	}
+	if (!tracker->head && !tracker->wand)
+		options_fault(reader, GR_DIAG_ERROR, entry->at, NULL,
+			      "tracks neither head nor wand; leave it out or set one of them");
+	if (tracker->kind == LAYOUT_TRACKER_REPLAY && !options_given(entry->at, "file"))
+		options_fault(reader, GR_DIAG_ERROR, entry->at, "file",
+			      "missing; a replay needs the log that it replays");
+	if (tracker->kind != LAYOUT_TRACKER_REPLAY && tracker->file)
+		options_fault(reader, GR_DIAG_WARNING, entry->at, "file",
+			      "not used: only kind = \"replay\" reads a log");
+	if (tracker->kind != LAYOUT_TRACKER_SIM && entry->sim.at)
+		options_fault(reader, GR_DIAG_WARNING, entry->at, "sim",
+			      "not used: only kind = \"sim\" is simulated");
+}
+
+static void check_control_socket(struct options_reader *reader, const struct layout_file *file)
+{
+	const struct sockaddr_un address;
+	const char *path = file->control_socket;
+
+	if (!path)
+		return;
+	if (path[0] != '/')
+		options_fault(reader, GR_DIAG_ERROR, file->at, "control_socket",
+			      "\"%.100s\" is not absolute; a daemon has no folder of its own, begin with '/'",
+			      path);
+	else if (strlen(path) >= sizeof address.sun_path)
+		options_fault(reader, GR_DIAG_ERROR, file->at, "control_socket",
+			      "%zu bytes; a socket's path has at most %zu", strlen(path),
+			      sizeof address.sun_path - 1);
+}
+
+void layout_check(struct options_reader *reader, struct layout_file *file)
+{
+	if (!file->wall_count && options_given(file->at, "walls"))
+		options_fault(reader, GR_DIAG_ERROR, file->at, "walls", "no walls; a room needs one");
+	check_wall_names(reader, file);
+	layout_check_walls(reader, file);
+	layout_check_nodes(reader, file);
+	layout_check_room(reader, file);
+	layout_check_network(reader, file);
+	for (size_t i = 0; i < file->tracker_count; i++)
+		check_tracker(reader, file, i);
+	check_control_socket(reader, file);
+}

@@ -1,0 +1,168 @@
+#include "config/address.h"
+#include "config/layout_check.h"
+
+#include <net/if.h>
+#include <string.h>
+
+/* Least MTU that IPv6 allows (RFC 8200, section 5). */
+#define MTU_MIN_V6 1280
+
+struct endpoint {
+	const struct layout_file_node *node; /* NULL: the master */
+	struct address address;
+	uint16_t port;
+};
+
+/* A machine's address, or false and a fault. */
+static bool machine_address(struct options_reader *reader, const config_setting_t *at,
+			    const char *key, const char *text, struct address *out)
+{
+	if (!address_parse(text, out)) {
+		options_fault(reader, GR_DIAG_ERROR, at, key,
+			      "\"%.80s\" is not a numeric IPv4 or IPv6 address%s", text,
+			      !strcmp(text, "localhost") ? ", did you mean \"127.0.0.1\"?" :
+							   "; write it as 192.0.2.1 or 2001:db8::1");
+		return false;
+	}
+	if (!address_of_machine(out)) {
+		options_fault(reader, GR_DIAG_ERROR, at, key,
+			      "%.80s is not one machine's address; give the one that the others reach it by",
+			      text);
+		return false;
+	}
+	return true;
+}
+
+static void check_clash(struct options_reader *reader, const struct endpoint *ends, size_t count)
+{
+	const struct endpoint *last = &ends[count - 1];
+
+	for (size_t i = 0; i + 1 < count; i++) {
+		if (ends[i].port != last->port || !address_equal(&ends[i].address, &last->address))
+			continue;
+		options_fault(reader, GR_DIAG_ERROR, last->node->at, "port",
+			      "%s port %u is taken by %s%s%s; give each its own",
+			      last->node->node.address, last->port,
+			      ends[i].node ? "node \"" : "the master",
+			      ends[i].node ? ends[i].node->node.name : "", ends[i].node ? "\"" : "");
+		return;
+	}
+}
+
+static void check_group(struct options_reader *reader, const struct layout_file *file,
+			const struct address *master)
+{
+	const struct layout_network *network = &file->network.network;
+	const char *key = "network.group";
+	struct address group;
+
+	if (network->cast == LAYOUT_UNICAST) {
+		if (network->group)
+			options_fault(reader, GR_DIAG_WARNING, file->at, key,
+				      "not used: cast is \"unicast\"");
+		return;
+	}
+	if (!network->group) {
+		if (!options_given(file->network.at, "group"))
+			options_fault(reader, GR_DIAG_ERROR, file->at, key,
+				      "missing; cast = \"%s\" needs %s",
+				      network->cast == LAYOUT_MULTICAST ? "multicast" : "broadcast",
+				      network->cast == LAYOUT_MULTICAST ?
+					      "a multicast group such as \"239.192.71.1\"" :
+					      "the net's broadcast address such as \"192.0.2.255\"");
+		return;
+	}
+	if (!address_parse(network->group, &group)) {
+		options_fault(reader, GR_DIAG_ERROR, file->at, key,
+			      "\"%.80s\" is not a numeric IPv4 or IPv6 address", network->group);
+	} else if (network->cast == LAYOUT_MULTICAST && !address_multicast(&group)) {
+		options_fault(reader, GR_DIAG_ERROR, file->at, key,
+			      "%s is not a multicast group; those are 224.0.0.0 to 239.255.255.255 "
+			      "(239.192.0.0/14 for a site's own) and ff00::/8",
+			      network->group);
+	} else if (network->cast == LAYOUT_BROADCAST &&
+		   (!group.v4 || address_multicast(&group) || address_unspecified(&group) ||
+		    address_loopback(&group))) {
+		options_fault(reader, GR_DIAG_ERROR, file->at, key,
+			      "%s is not an IPv4 broadcast address; it looks like 192.0.2.255",
+			      network->group);
+	} else if (master && group.v4 != master->v4) {
+		options_fault(reader, GR_DIAG_ERROR, file->at, key,
+			      "is IPv%c, the master's address IPv%c; use one of the two",
+			      group.v4 ? '4' : '6', master->v4 ? '4' : '6');
+	}
+}
+
+static void check_interface(struct options_reader *reader, const struct layout_file *file)
+{
+	const char *name = file->network.network.interface;
+
+	if (name && (strlen(name) >= IF_NAMESIZE || strpbrk(name, "/ ")))
+		options_fault(reader, GR_DIAG_ERROR, file->at, "network.interface",
+			      "\"%.80s\" is not an interface's name; those have 1 to %d bytes without '/' and "
+			      "blanks, see \"ip link\"",
+			      name, IF_NAMESIZE - 1);
+}
+
+/* Who holds no key may only be talked to where nobody else listens. */
+static void check_key(struct options_reader *reader, const struct layout_file *file,
+		      const struct endpoint *ends, size_t count)
+{
+	const struct layout_network *network = &file->network.network;
+
+	if (network->key_file || options_given(file->network.at, "key_file"))
+		return;
+	for (size_t i = 0; i < count; i++)
+		if (!address_loopback(&ends[i].address)) {
+			options_fault(reader, GR_DIAG_ERROR, file->at, "network.key_file",
+				      "missing; %s is not on loopback, so every machine needs the cluster's "
+				      "key: key_file = \"/etc/grotto/cluster.key\"",
+				      ends[i].node ? ends[i].node->node.address :
+						     network->master_address);
+			return;
+		}
+	if (network->cast != LAYOUT_UNICAST &&
+	    (!network->interface || strcmp(network->interface, "lo")))
+		options_fault(reader, GR_DIAG_ERROR, file->at, "network.key_file",
+			      "missing; without a key, cast must be \"unicast\" or interface \"lo\"");
+}
+
+void layout_check_network(struct options_reader *reader, struct layout_file *file)
+{
+	const struct layout_network *network = &file->network.network;
+	struct endpoint ends[LAYOUT_MAX_NODES + 1];
+	size_t count = 0;
+	bool master = network->master_address &&
+		      machine_address(reader, file->at, "network.master_address",
+				      network->master_address, &ends[0].address);
+
+	if (master) {
+		ends[0].node = NULL;
+		ends[0].port = network->master_port;
+		count = 1;
+	}
+	for (size_t w = 0; w < file->wall_count; w++)
+		for (size_t n = 0; n < file->walls[w].node_count; n++) {
+			const struct layout_file_node *node = &file->walls[w].nodes[n];
+
+			if (count == LAYOUT_MAX_NODES + 1 || !node->at || !node->node.address ||
+			    !machine_address(reader, node->at, "address", node->node.address,
+					     &ends[count].address))
+				continue;
+			ends[count].node = node;
+			ends[count].port = node->node.port;
+			if (master && ends[count].address.v4 != ends[0].address.v4)
+				options_fault(reader, GR_DIAG_ERROR, node->at, "address",
+					      "is IPv%c, the master's IPv%c; use one of the two",
+					      ends[count].address.v4 ? '4' : '6',
+					      ends[0].address.v4 ? '4' : '6');
+			count++;
+			check_clash(reader, ends, count);
+		}
+	check_group(reader, file, master ? &ends[0].address : NULL);
+	check_interface(reader, file);
+	check_key(reader, file, ends, count);
+	if (master && !ends[0].address.v4 && network->mtu < MTU_MIN_V6)
+		options_fault(reader, GR_DIAG_ERROR, file->at, "network.mtu",
+			      "%d bytes; IPv6 has at least %d", network->mtu, MTU_MIN_V6);
+}

@@ -1,0 +1,86 @@
+/*
+ * A layout as its file says it, before it is checked and turned into struct
+ * layout: corners or centre and size, eyes of the wall or of the node.
+ *
+ * Private to config/.
+ */
+#ifndef GROTTO_CONFIG_LAYOUT_OPTIONS_H
+#define GROTTO_CONFIG_LAYOUT_OPTIONS_H
+
+#include "config/layout.h"
+#include "config/options.h"
+
+#define LAYOUT_MAX_TRACKERS 8
+
+/* Values of `eyes` of a wall or node: enum layout_eyes up to this one. */
+#define LAYOUT_FILE_EYE_PER_NODE LAYOUT_EYES_LEFT
+
+struct layout_file_node {
+	const config_setting_t *at;
+	struct layout_node node;
+	int eyes, eye; /* as given, OPTION_ABSENT when not */
+};
+
+struct layout_file_wall {
+	const config_setting_t *at;
+	char name[LAYOUT_NAME_MAX];
+	vec3 lower_left, lower_right, upper_left; /* NaN when not given */
+	vec3 center;
+	float size[2];
+	float heading, pitch, roll; /* radians */
+	int pixels[2];
+	int eyes;
+	struct layout_file_node *nodes;
+	size_t node_count;
+};
+
+struct layout_file_network {
+	const config_setting_t *at;
+	struct layout_network network;
+};
+
+struct layout_file_rates {
+	const config_setting_t *at;
+	struct layout_rates rates;
+};
+
+struct layout_file_start {
+	const config_setting_t *at;
+	vec3 head, wand;
+	vec3 head_angles, wand_angles; /* heading, pitch, roll; radians */
+};
+
+struct layout_file_room {
+	const config_setting_t *at;
+	vec3 min, max;
+};
+
+struct layout_file_sim {
+	const config_setting_t *at;
+	struct layout_sim sim;
+};
+
+struct layout_file_tracker {
+	const config_setting_t *at;
+	struct layout_tracker tracker;
+	struct layout_file_sim sim;
+};
+
+struct layout_file {
+	const config_setting_t *at;
+	char name[LAYOUT_NAME_MAX];
+	float eye_separation_m;
+	char *control_socket;
+	struct layout_file_wall *walls;
+	size_t wall_count;
+	struct layout_file_network network;
+	struct layout_file_rates rates;
+	struct layout_file_start start;
+	struct layout_file_room room;
+	struct layout_file_tracker *trackers;
+	size_t tracker_count;
+};
+
+extern const struct option layout_options[];
+
+#endif
