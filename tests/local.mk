@@ -10,3 +10,4 @@ include $(top_srcdir)/tests/gi.mk
 include $(top_srcdir)/tests/view.mk
 include $(top_srcdir)/tests/daemon.mk
 include $(top_srcdir)/tests/tools.mk
+include $(top_srcdir)/tests/packaging.mk

@@ -3,7 +3,6 @@
 #include "base/clock.h"
 #include "base/result.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
