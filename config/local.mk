@@ -9,10 +9,15 @@ config_libgconfig_a_SOURCES = \
 	config/layout_check_nodes.c \
 	config/layout_check_room.c \
 	config/layout_check_walls.c \
+	config/layout_geometry.c config/layout_geometry.h \
 	config/layout_options.c config/layout_options.h \
+	config/layout_write.c \
 	config/options.c config/options.h \
+	config/options_markdown.c \
+	config/options_write.c \
 	config/scene_check.c \
 	config/scene_file.c config/scene_file.h \
 	config/scene_options.c config/scene_options.h \
+	config/scene_write.c \
 	config/suggest.c config/suggest.h
 config_libgconfig_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(LIBCONFIG_CFLAGS) $(SODIUM_CFLAGS)

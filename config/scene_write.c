@@ -1,0 +1,48 @@
+#include "base/result.h"
+#include "config/scene_options.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+int scene_file_write(FILE *out, const struct scene_file *file)
+{
+	/* Strings are borrowed: the form is never given to options_free. */
+	struct scene_form form = { 0 };
+	struct scene_form_lamp *lamps = calloc(file->lamp_count + 1, sizeof *lamps);
+	struct scene_form_camera *cameras = calloc(file->camera_count + 1, sizeof *cameras);
+	int result = GR_ERR_NOMEM;
+
+	if (!lamps || !cameras)
+		goto out;
+	memcpy(form.name, file->name, sizeof form.name);
+	form.model = file->model;
+	form.model_scale = file->model_scale;
+	form.emission_scale = file->emission_scale;
+	form.double_sided = file->double_sided;
+	glm_vec3_copy((float *)file->background, form.background);
+	form.near_m = file->near_m;
+	form.far_m = file->far_m;
+	form.shadow_pixels = file->shadow_pixels;
+	form.lamps = lamps;
+	form.lamp_count = file->lamp_count;
+	for (size_t i = 0; i < file->lamp_count; i++)
+		lamps[i].lamp = file->lamps[i];
+	form.cameras = cameras;
+	form.camera_count = file->camera_count;
+	for (size_t i = 0; i < file->camera_count; i++)
+		cameras[i].camera = file->cameras[i];
+	form.gi.method = (int)file->gi.method;
+	form.gi.lpv.gi = file->gi;
+	form.medium.absorption_per_m = file->absorption_per_m;
+	form.medium.scattering_per_m = file->scattering_per_m;
+	form.tone.tone = file->tone;
+	form.tone.ambient = OPTION_ABSENT;
+	glm_vec3_copy((float *)file->room.p, form.room.position);
+	form.room.heading_rad = file->room_heading_rad;
+	options_write(out, scene_options, &form);
+	result = fflush(out) || ferror(out) ? GR_ERR_IO : GR_OK;
+out:
+	free(lamps);
+	free(cameras);
+	return result;
+}
