@@ -11,7 +11,7 @@ renderer_libgrenderer_a_SOURCES = $(RENDERER_SOURCES)
 nodist_renderer_libgrenderer_a_SOURCES = renderer/shaders/embedded.c
 EXTRA_DIST += $(SHADERS)
 renderer_libgrenderer_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(EPOXY_CFLAGS) $(GLFW_CFLAGS) \
-	$(ASSIMP_CFLAGS) $(OPENEXR_CFLAGS) $(PNG_CFLAGS) $(SODIUM_CFLAGS)
+	$(ASSIMP_CFLAGS) $(OPENEXR_CFLAGS) $(PNG_CFLAGS) $(SODIUM_CFLAGS) $(JPEG_CFLAGS) $(JSONC_CFLAGS)
 
 # What a program that links each layer needs, lowest last.
 BASE_LIBS = base/libgbase.a $(SODIUM_LIBS)
@@ -19,4 +19,4 @@ CONFIG_LIBS = config/libgconfig.a $(BASE_LIBS) $(LIBCONFIG_LIBS)
 PROTOCOL_LIBS = protocol/libgprotocol.a $(BASE_LIBS) $(LZO_LIBS)
 TRACKING_LIBS = tracking/libgtracking.a $(BASE_LIBS)
 RENDERER_LIBS = renderer/libgrenderer.a $(CONFIG_LIBS) $(EPOXY_LIBS) $(GLFW_LIBS) \
-	$(ASSIMP_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(EMBREE_LIBS)
+	$(ASSIMP_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(JPEG_LIBS) $(JSONC_LIBS) $(EMBREE_LIBS)

@@ -6,7 +6,10 @@ RENDERER_SOURCES += \
 	renderer/gl/target_glfw.c renderer/gl/target_private.h \
 	renderer/gl/timer.c renderer/gl/timer.h \
 	renderer/image/image.h \
-	renderer/scene/scene.h
+	renderer/scene/gltf.c renderer/scene/import.c renderer/scene/import.h \
+	renderer/scene/import_geometry.c renderer/scene/import_image.c \
+	renderer/scene/import_material.c renderer/scene/scene.c renderer/scene/scene.h \
+	renderer/scene/scene_import.c renderer/scene/texture.c
 
 SHADERS += renderer/shaders/material.glsl
 EXTRA_DIST += renderer/shaders/embed.awk renderer/shaders/resolve.awk renderer/shaders/check.sh

@@ -1,0 +1,201 @@
+/*
+ * A model through assimp. The order matters for models that lie: glTF's JSON is
+ * checked first, then assimp only reads; faces with bad indices or NaN corners
+ * go; only then assimp's own steps (triangulation, normals) see the meshes.
+ */
+#include "renderer/scene/import.h"
+
+#include "base/result.h"
+
+#include <assimp/cimport.h>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <sodium.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Where normals are made up, edges sharper than this stay edges. */
+#define SMOOTH_DEGREES 60.0f
+
+static void hash_u64(crypto_generichash_state *state, uint64_t value)
+{
+	uint8_t bytes[8];
+
+	for (int i = 0; i < 8; i++)
+		bytes[i] = (uint8_t)(value >> (8 * i));
+	crypto_generichash_update(state, bytes, sizeof bytes);
+}
+
+static void hash_bytes(crypto_generichash_state *state, const void *bytes, size_t len)
+{
+	hash_u64(state, len);
+	if (len)
+		crypto_generichash_update(state, bytes, len);
+}
+
+static void hash_material(crypto_generichash_state *state, const struct scene_material *m)
+{
+	hash_bytes(state, m->diffuse, sizeof m->diffuse);
+	hash_bytes(state, m->specular, sizeof m->specular);
+	hash_bytes(state, &m->shininess, sizeof m->shininess);
+	hash_bytes(state, m->emission, sizeof m->emission);
+	hash_u64(state, (uint64_t)(int64_t)m->diffuse_image);
+	hash_u64(state, (uint64_t)(int64_t)m->emission_image);
+	hash_u64(state, (uint64_t)m->two_sided | (uint64_t)m->tinted_specular << 1);
+}
+
+/* Field by field: structs have padding, and names and paths are no content. */
+static void hash_scene(struct scene *scene)
+{
+	crypto_generichash_state state;
+
+	crypto_generichash_init(&state, NULL, 0, sizeof scene->hash);
+	hash_bytes(&state, scene->vertices, scene->vertex_count * sizeof scene->vertices[0]);
+	hash_bytes(&state, scene->indices, scene->index_count * sizeof scene->indices[0]);
+	hash_u64(&state, scene->draw_count);
+	for (size_t i = 0; i < scene->draw_count; i++) {
+		hash_u64(&state, scene->draws[i].first_index);
+		hash_u64(&state, scene->draws[i].index_count);
+		hash_u64(&state, scene->draws[i].material);
+	}
+	hash_u64(&state, scene->material_count);
+	for (size_t i = 0; i < scene->material_count; i++)
+		hash_material(&state, &scene->materials[i]);
+	hash_u64(&state, scene->image_count);
+	for (size_t i = 0; i < scene->image_count; i++) {
+		const struct scene_image *image = &scene->images[i];
+
+		hash_u64(&state, (uint64_t)image->width << 1 | image->srgb);
+		hash_bytes(&state, image->rgba, (size_t)image->width * (size_t)image->height * 4);
+	}
+	crypto_generichash_final(&state, scene->hash, sizeof scene->hash);
+}
+
+static void report_dropped(const struct import *import)
+{
+	const struct scene *s = import->scene;
+
+	if (s->dropped_nonfinite + s->dropped_degenerate + s->dropped_index)
+		gr_diag_add(import->diag, GR_DIAG_WARNING, import->path, 0, NULL,
+			    "triangles dropped: %zu with NaN or infinite corners, %zu without area, "
+			    "%zu with an index out of range",
+			    s->dropped_nonfinite, s->dropped_degenerate, s->dropped_index);
+}
+
+static int convert(struct import *import, struct aiScene *from)
+{
+	/* glTF asks for flat normals where it gives none; the others mean smooth ones. */
+	unsigned steps = aiProcess_Triangulate | aiProcess_SortByPType;
+	int result;
+
+	steps |= import->gltf ? aiProcess_GenNormals
+			      : aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices;
+	if ((from->mFlags & AI_SCENE_FLAGS_INCOMPLETE) || !from->mRootNode) {
+		gr_diag_add(import->diag, GR_DIAG_ERROR, import->path, 0, NULL,
+			    "the model is not complete");
+		return GR_ERR_CONFIG;
+	}
+	result = import_clean(import, from);
+	if (result != GR_OK)
+		return result;
+	import->from = aiApplyPostProcessing(from, steps);
+	if (!import->from) {
+		gr_diag_add(import->diag, GR_DIAG_ERROR, import->path, 0, NULL,
+			    "triangles cannot be made of it: %s", aiGetErrorString());
+		return GR_ERR_CONFIG;
+	}
+	result = import_materials(import);
+	if (result == GR_OK)
+		result = import_geometry(import);
+	return result;
+}
+
+/* assimp reads from the file, since formats name their own companions, or from bytes. */
+static const struct aiScene *read_with_assimp(const char *path, const uint8_t *bytes, size_t len,
+					      bool from_file)
+{
+	struct aiPropertyStore *properties = aiCreatePropertyStore();
+	const char *ending = strrchr(path, '.');
+	const struct aiScene *from;
+
+	if (!properties)
+		return NULL;
+	aiSetImportPropertyFloat(properties, AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, SMOOTH_DEGREES);
+	aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, 0);
+	if (from_file)
+		from = aiImportFileExWithProperties(path, 0, NULL, properties);
+	else
+		from = aiImportFileFromMemoryWithProperties((const char *)bytes, (unsigned)len, 0,
+							    ending ? ending + 1 : "", properties);
+	aiReleasePropertyStore(properties);
+	return from;
+}
+
+static int import_parts(struct import *import, const uint8_t *bytes, size_t len, bool from_file)
+{
+	const struct aiScene *from = read_with_assimp(import->path, bytes, len, from_file);
+	int result;
+
+	if (!from) {
+		gr_diag_add(import->diag, GR_DIAG_ERROR, import->path, 0, NULL, "cannot be imported: %s",
+			    aiGetErrorString());
+		return GR_ERR_CONFIG;
+	}
+	import->from = from;
+	/* aiApplyPostProcessing works in place, so the scene is not const in truth. */
+	result = convert(import, (struct aiScene *)from);
+	if (import->from) /* else a step failed, and assimp has freed it itself */
+		aiReleaseImport(import->from);
+	return result;
+}
+
+static int import_any(const uint8_t *bytes, size_t len, const char *path, bool from_file,
+		      const struct import_options *options, struct scene **out,
+		      struct gr_diag *diag)
+{
+	struct gltf_extra extra = { 0 };
+	struct import import = { .path = path, .options = options, .diag = diag };
+	int result = GR_OK;
+
+	if (gltf_is_name(path)) {
+		result = gltf_read(bytes, len, path, &extra, diag);
+		import.gltf = &extra;
+	}
+	if (result == GR_OK) {
+		import.scene = calloc(1, sizeof *import.scene);
+		result = import.scene ? import_parts(&import, bytes, len, from_file) : GR_ERR_NOMEM;
+	}
+	gltf_finish(&extra);
+	if (result != GR_OK) {
+		scene_destroy(&import.scene);
+		return result;
+	}
+	report_dropped(&import);
+	hash_scene(import.scene);
+	*out = import.scene;
+	return GR_OK;
+}
+
+int import_bytes(const uint8_t *bytes, size_t len, const char *name,
+		 const struct import_options *options, struct scene **out, struct gr_diag *diag)
+{
+	*out = NULL;
+	if (len < 1 || len > IMPORT_MAX_FILE)
+		return GR_ERR_RANGE;
+	return import_any(bytes, len, name, false, options, out, diag);
+}
+
+int import_model(const char *path, const struct import_options *options, struct scene **out,
+		 struct gr_diag *diag)
+{
+	uint8_t *bytes;
+	size_t len;
+	int result = import_read_file(path, IMPORT_MAX_FILE, &bytes, &len, diag, "model");
+
+	*out = NULL;
+	if (result != GR_OK)
+		return result;
+	result = import_any(bytes, len, path, true, options, out, diag);
+	free(bytes);
+	return result;
+}
