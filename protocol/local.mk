@@ -1,7 +1,19 @@
 noinst_LIBRARIES += protocol/libgprotocol.a
 protocol_libgprotocol_a_SOURCES = \
-	protocol/key.h \
-	protocol/master.h \
-	protocol/node.h \
-	protocol/params.def protocol/params.h
+	protocol/barrier.h \
+	protocol/delta.c \
+	protocol/fragment.c protocol/fragment.h \
+	protocol/key.c protocol/key.h \
+	protocol/master.c protocol/master.h protocol/master_private.h \
+	protocol/master_join.c \
+	protocol/master_repair.c \
+	protocol/message.c protocol/message.h \
+	protocol/node.c protocol/node.h protocol/node_private.h \
+	protocol/node_frame.c \
+	protocol/outbox.c protocol/outbox.h \
+	protocol/pack.c protocol/pack.h \
+	protocol/params.c protocol/params.def protocol/params.h protocol/state.h \
+	protocol/peer.c protocol/peer.h \
+	protocol/replay.h \
+	protocol/wire.c protocol/wire.h
 protocol_libgprotocol_a_CFLAGS = $(AM_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS)

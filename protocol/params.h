@@ -49,8 +49,10 @@ void param_state_copy(struct param_state *to, const struct param_state *from);
 
 /*
  * Sets a whole parameter; `values` holds info->count elements of its type.
- * A value equal bit by bit changes nothing and keeps the old version. GR_OK,
- * GR_NOTHING (equal), GR_ERR_RANGE (NaN or outside; nothing changed).
+ * A value equal bit by bit changes nothing and keeps the old version. frame is
+ * at least 1 (0 is the defaults' own) and not below the parameter's version.
+ * GR_OK, GR_NOTHING (equal), GR_ERR_RANGE (NaN, outside, or such a frame;
+ * nothing changed).
  */
 int param_set(struct param_state *state, enum param_id id, const void *values, uint64_t frame);
 /* In place, valid until the next change; cast by type: const float *, ... */
@@ -65,14 +67,20 @@ size_t param_delta_max(void);
 long param_delta_encode(const struct param_state *state, uint64_t base, uint8_t *bytes, size_t size);
 /*
  * Checks the whole delta first (ids, order, lengths, ranges, versions), then
- * applies it; a bad one changes nothing. GR_OK or GR_ERR_FORMAT.
+ * applies it; a bad one changes nothing. Base 0 is a snapshot: what it does not
+ * name goes back to its default. The caller sees to it that the state has the
+ * base. GR_OK or GR_ERR_FORMAT.
  */
 int param_delta_apply(struct param_state *state, const uint8_t *bytes, size_t len);
+/* The base that a delta names, without a look at the rest. GR_OK or GR_ERR_FORMAT. */
+int param_delta_base(const uint8_t *bytes, size_t len, uint64_t *out_base);
 
 /*
  * Hash of all values and versions, order dependent, chained with the previous
  * frame's hash by the caller: h(N) = param_state_hash(state, h(N-1)).
  */
 uint64_t param_state_hash(const struct param_state *state, uint64_t previous);
+/* Hash of the table itself (names, types, counts, ranges): nodes compare it at join. */
+uint64_t param_table_hash(void);
 
 #endif

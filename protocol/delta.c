@@ -1,0 +1,103 @@
+#include "protocol/state.h"
+
+#include "base/cursor.h"
+#include "base/result.h"
+
+size_t param_delta_max(void)
+{
+	return PARAM_DELTA_MAX;
+}
+
+long param_delta_encode(const struct param_state *state, uint64_t base, uint8_t *bytes, size_t size)
+{
+	struct gr_writer w = gr_writer(bytes, size);
+	uint16_t count = 0;
+
+	for (int i = 0; i < PARAM_COUNT; i++)
+		count = (uint16_t)(count + (state->version[i] > base));
+	gr_write_u64(&w, base);
+	gr_write_u16(&w, count);
+	for (int i = 0; i < PARAM_COUNT; i++) {
+		enum param_id id = (enum param_id)i;
+		uint8_t *room;
+
+		if (state->version[i] <= base)
+			continue;
+		gr_write_u16(&w, (uint16_t)i);
+		gr_write_u64(&w, state->version[i]);
+		room = gr_write_room(&w, param_info(id)->size);
+		if (room)
+			param_encode_values(id, param_get(state, id), room);
+	}
+	return w.ok ? (long)w.len : GR_ERR_RANGE;
+}
+
+int param_delta_base(const uint8_t *bytes, size_t len, uint64_t *out_base)
+{
+	struct gr_reader r = gr_reader(bytes, len);
+
+	*out_base = gr_read_u64(&r);
+	gr_read_u16(&r);
+	return r.ok ? GR_OK : GR_ERR_FORMAT;
+}
+
+/* One entry of a delta, checked against what the state holds. Its values stay encoded. */
+struct entry {
+	enum param_id id;
+	uint64_t version;
+	const uint8_t *bytes;
+};
+
+static bool read_entry(struct gr_reader *r, const struct param_state *state, uint64_t base,
+		       int last_id, struct entry *out)
+{
+	uint64_t values[(PARAM_VALUE_BYTES + 7) / 8];
+	unsigned id = gr_read_u16(r);
+	uint64_t version = gr_read_u64(r);
+
+	if (!r->ok || id >= PARAM_COUNT || (int)id <= last_id || version <= base)
+		return false;
+	/* Base 0 starts from the defaults; any other goes forward from what is held. */
+	if (base && version < state->version[id])
+		return false;
+	out->id = (enum param_id)id;
+	out->version = version;
+	out->bytes = gr_read_bytes(r, param_info(out->id)->size);
+	if (!out->bytes)
+		return false;
+	param_decode_values(out->id, out->bytes, values);
+	return param_valid(out->id, values);
+}
+
+int param_delta_apply(struct param_state *state, const uint8_t *bytes, size_t len)
+{
+	struct gr_reader r = gr_reader(bytes, len);
+	uint64_t base = gr_read_u64(&r);
+	unsigned count = gr_read_u16(&r);
+	struct gr_reader first;
+	struct entry e;
+	int last_id = -1;
+
+	if (!r.ok || count > PARAM_COUNT)
+		return GR_ERR_FORMAT;
+	first = r;
+	for (unsigned i = 0; i < count; i++) {
+		if (!read_entry(&r, state, base, last_id, &e))
+			return GR_ERR_FORMAT;
+		last_id = (int)e.id;
+	}
+	if (!gr_reader_done(&r))
+		return GR_ERR_FORMAT;
+	if (!base) {
+		for (int i = 0; i < PARAM_COUNT; i++)
+			param_reset(state, (enum param_id)i);
+	}
+	r = first;
+	last_id = -1;
+	for (unsigned i = 0; i < count && read_entry(&r, state, base, last_id, &e); i++) {
+		last_id = (int)e.id;
+		param_decode_values(e.id, e.bytes, param_values(state, e.id));
+		state->version[e.id] = e.version;
+	}
+	return GR_OK;
+}

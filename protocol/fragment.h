@@ -1,0 +1,66 @@
+/*
+ * Messages cut into fragments and put together again. All fragments of a
+ * message but the last have the same length, so that one header says where
+ * its payload belongs.
+ *
+ * A reassembly holds one message: a fragment of a newer one (higher number)
+ * takes its place, one of an older one is dropped. So its memory is bounded
+ * whatever arrives.
+ */
+#ifndef GROTTO_PROTOCOL_FRAGMENT_H
+#define GROTTO_PROTOCOL_FRAGMENT_H
+
+#include "protocol/wire.h"
+
+#define FDP_BITMAP_BYTES (FDP_FRAGMENTS_MAX / 8)
+
+/* How many fragments a message needs; 0 when it does not fit into FDP_FRAGMENTS_MAX. */
+unsigned fdp_fragment_count(size_t message_len, size_t datagram_max);
+/*
+ * Bytes of every fragment but the last, found from any one fragment's header;
+ * 0 when index, count and lengths do not go together.
+ */
+size_t fdp_fragment_chunk(const struct fdp_header *header);
+/* Where fragment `index` of a message begins, and its length. */
+size_t fdp_fragment_at(size_t message_len, size_t datagram_max, unsigned index, size_t *out_len);
+
+struct fdp_reassembly {
+	uint64_t message; /* 0: none yet */
+	uint32_t message_len, plain_len;
+	uint32_t chunk;
+	uint16_t count, have;
+	uint16_t reported; /* missing ones below this index were told by _gap */
+	bool packed;
+	uint64_t got[FDP_FRAGMENTS_MAX / 64];
+	uint8_t bytes[FDP_MESSAGE_MAX];
+};
+
+enum fdp_fragment_result {
+	FDP_FRAGMENT_PART,  /* taken, others are missing */
+	FDP_FRAGMENT_WHOLE, /* taken, and the message is whole: said once */
+	FDP_FRAGMENT_AGAIN, /* we have it, or the message is older than the one held */
+	FDP_FRAGMENT_BAD,   /* does not go with the others of its message */
+};
+
+/* The header has passed the gate; payload has header->payload_len bytes. */
+enum fdp_fragment_result fdp_reassembly_add(struct fdp_reassembly *r,
+					    const struct fdp_header *header,
+					    const uint8_t *payload);
+void fdp_reassembly_reset(struct fdp_reassembly *r);
+static inline bool fdp_reassembly_open(const struct fdp_reassembly *r)
+{
+	return r->message && r->have < r->count;
+}
+/* Sets the bits of missing fragments with index < below; returns how many. */
+unsigned fdp_reassembly_missing(const struct fdp_reassembly *r, unsigned below,
+				uint8_t bitmap[FDP_BITMAP_BYTES]);
+/* Missing fragments before the newest one seen that no earlier call gave; returns how many. */
+unsigned fdp_reassembly_gap(struct fdp_reassembly *r, unsigned index,
+			    uint8_t bitmap[FDP_BITMAP_BYTES]);
+
+static inline bool fdp_bit(const uint8_t *bitmap, unsigned i)
+{
+	return bitmap[i / 8] >> (i % 8) & 1;
+}
+
+#endif

@@ -1,0 +1,587 @@
+#include "protocol/master_private.h"
+
+#include "base/result.h"
+
+#include <sodium.h>
+#include <stdlib.h>
+#include <string.h>
+
+_Static_assert(FDP_STATE_HEAD_BYTES + PARAM_DELTA_MAX <= FDP_MESSAGE_MAX,
+	       "the whole state must fit into one message");
+_Static_assert(FDP_STATE_HEAD_BYTES + PARAM_DELTA_MAX <=
+		       FDP_FRAGMENTS_MAX * (FDP_DATAGRAM_MIN - FDP_HEADER_BYTES),
+	       "the whole state must fit into the fragments of the smallest datagrams");
+_Static_assert(FDP_HEADER_BYTES + FDP_BODY_MAX <= FDP_DATAGRAM_MIN,
+	       "every short message must fit into one datagram");
+
+#define BIT(node) (UINT64_C(1) << (node))
+#define MASTER_KINDS (1u << FDP_JOIN | 1u << FDP_ACK | 1u << FDP_NACK | 1u << FDP_READY | \
+		      1u << FDP_SWAPPED | 1u << FDP_LEAVE)
+
+static void to_caller(void *ctx, int to, const uint8_t *bytes, size_t len)
+{
+	struct fdp_master *m = ctx;
+
+	m->ops.send(m->ops.ctx, to, bytes, len);
+}
+
+void fdp_master_say(struct fdp_master *m, const struct fdp_master_event *event)
+{
+	m->ops.event(m->ops.ctx, event);
+}
+
+uint64_t fdp_master_mask(const struct fdp_master *m, bool (*test)(enum fdp_peer_state))
+{
+	uint64_t mask = 0;
+
+	for (size_t i = 0; i < m->params.node_count; i++)
+		mask |= test(m->peers[i].state) ? BIT(i) : 0;
+	return mask;
+}
+
+static int check_params(const struct fdp_master_params *p, const struct fdp_master_ops *ops)
+{
+	if (!p->session || !p->node_count || p->node_count > FDP_MAX_NODES || !p->node_names ||
+	    p->datagram_max < FDP_DATAGRAM_MIN || p->datagram_max > FDP_DATAGRAM_MAX ||
+	    p->deadline_ns <= 0 || p->probe_ns < 0 || !p->evict_frames || !ops->send || !ops->event)
+		return GR_ERR_RANGE;
+	for (size_t i = 0; i < p->node_count; i++)
+		if (!p->node_names[i] || !p->node_names[i][0] ||
+		    strlen(p->node_names[i]) >= FDP_NAME_BYTES)
+			return GR_ERR_RANGE;
+	return GR_OK;
+}
+
+/* Frame 0 is the defaults: what a node can hold before the first frame begins. */
+static void remember_hash(struct fdp_master *m)
+{
+	m->hash = param_state_hash(m->state, m->previous_hash);
+	m->hashes[m->frame % FDP_HASH_RING] = m->hash;
+	m->hash_frames[m->frame % FDP_HASH_RING] = m->frame;
+}
+
+int fdp_master_create(struct fdp_master **out, const struct fdp_master_params *params,
+		      const struct fdp_master_ops *ops)
+{
+	struct fdp_master *m;
+	int result = check_params(params, ops);
+
+	*out = NULL;
+	if (result)
+		return result;
+	m = calloc(1, sizeof *m);
+	if (!m)
+		return GR_ERR_NOMEM;
+	m->params = *params;
+	m->params.node_names = NULL; /* copied, so that the caller's may go */
+	for (size_t i = 0; i < params->node_count; i++)
+		strcpy(m->names[i], params->node_names[i]);
+	if (!m->params.probe_ns)
+		m->params.probe_ns = params->deadline_ns / 8 > 0 ? params->deadline_ns / 8 : 1;
+	m->ops = *ops;
+	m->gate = (struct fdp_gate){
+		.key = m->params.key,
+		.session = params->session,
+		.kinds = MASTER_KINDS,
+		.any_session_kinds = 1u << FDP_JOIN,
+		.any_version_kinds = 1u << FDP_JOIN,
+		.first_sender = 0,
+		.last_sender = (uint16_t)(params->node_count - 1),
+	};
+	m->out = (struct fdp_outbox){
+		.key = m->params.key,
+		.sender = FDP_SENDER_MASTER,
+		.session = params->session,
+		.datagram_max = params->datagram_max,
+		.fan_out = params->multicast ? 1 : params->node_count,
+		.counters = &m->counters,
+		.send = to_caller,
+		.ctx = m,
+	};
+	memset(m->hash_frames, 0xff, sizeof m->hash_frames);
+	result = fdp_outbox_init(&m->out);
+	if (!result)
+		result = param_state_create(&m->state);
+	if (result) {
+		fdp_master_destroy(&m);
+		return result;
+	}
+	remember_hash(m);
+	fdp_master_begin_repairs(m);
+	*out = m;
+	return GR_OK;
+}
+
+void fdp_master_destroy(struct fdp_master **master)
+{
+	struct fdp_master *m = *master;
+
+	*master = NULL;
+	if (!m)
+		return;
+	fdp_outbox_finish(&m->out);
+	param_state_destroy(&m->state);
+	sodium_memzero(m->params.key, sizeof m->params.key);
+	free(m);
+}
+
+void fdp_master_announce(struct fdp_master *m, int to, enum fdp_kind kind)
+{
+	const bool delta = m->delta.number && m->delta.frame == m->frame;
+	const struct fdp_announce a = {
+		.frame = m->frame,
+		.swapped = m->swapped,
+		.message = delta ? m->delta.number : 0,
+		.count = delta ? m->delta.count : 0,
+		.live = fdp_master_mask(m, fdp_peer_counts),
+		.present = fdp_master_mask(m, fdp_peer_present),
+		.flags = fdp_master_twice(m) ? FDP_TWICE : 0,
+	};
+
+	fdp_outbox_send(&m->out, to, kind,
+			fdp_announce_encode(&a, fdp_outbox_body(&m->out), FDP_BODY_MAX));
+}
+
+void fdp_master_announce_to(struct fdp_master *m, uint64_t nodes, enum fdp_kind kind)
+{
+	if (m->params.multicast && nodes & (nodes - 1)) {
+		fdp_master_announce(m, FDP_TO_ALL, kind);
+		return;
+	}
+	for (size_t i = 0; i < m->params.node_count; i++)
+		if (nodes & BIT(i))
+			fdp_master_announce(m, (int)i, kind);
+}
+
+void fdp_master_write_state(struct fdp_master *m, struct fdp_letter *letter, enum fdp_kind kind,
+			    uint64_t base)
+{
+	const struct fdp_state_head head = {
+		.frame = m->frame,
+		.previous_frame = m->previous_frame,
+		.hash = m->hash,
+		.previous_hash = m->previous_hash,
+		.live = fdp_master_mask(m, fdp_peer_counts),
+		.present = fdp_master_mask(m, fdp_peer_present),
+		.flags = fdp_master_twice(m) ? FDP_TWICE : 0,
+	};
+	const size_t at = fdp_state_head_encode(&head, letter->bytes, FDP_STATE_HEAD_BYTES);
+	/* Cannot fail: the static assertions above. */
+	const long len = param_delta_encode(m->state, base, letter->bytes + at, PARAM_DELTA_MAX);
+
+	fdp_outbox_letter(&m->out, letter, kind, m->frame, at + (size_t)len);
+}
+
+/* Base: the oldest frame that every live node has acknowledged. */
+static uint64_t common_base(const struct fdp_master *m, uint64_t live)
+{
+	uint64_t base = UINT64_MAX;
+
+	for (size_t i = 0; i < m->params.node_count; i++)
+		if (live & BIT(i) && m->peers[i].status.acked < base)
+			base = m->peers[i].status.acked;
+	return live ? base : 0;
+}
+
+static void send_delta(struct fdp_master *m, uint64_t live)
+{
+	const unsigned copies = fdp_master_twice(m) && m->delta.count == 1 ? 2 : 1;
+
+	for (unsigned c = 0; c < copies; c++) {
+		if (m->params.multicast) {
+			fdp_outbox_post(&m->out, FDP_TO_ALL, &m->delta);
+			continue;
+		}
+		for (size_t i = 0; i < m->params.node_count; i++)
+			if (live & BIT(i))
+				fdp_outbox_post(&m->out, (int)i, &m->delta);
+	}
+}
+
+/* A frame boundary: who has acknowledged its snapshot counts from here on. */
+static void promote_joiners(struct fdp_master *m)
+{
+	for (size_t i = 0; i < m->params.node_count; i++) {
+		struct fdp_peer *peer = &m->peers[i];
+
+		if (peer->state != FDP_PEER_JOINING || !peer->synced)
+			continue;
+		peer->state = fdp_peer_next(peer->state, FDP_PEER_COMMITS);
+		peer->synced = false;
+		peer->missed_row = 0;
+	}
+}
+
+static void refresh_snapshots(struct fdp_master *m, int64_t now_ns)
+{
+	for (unsigned i = 0; i < m->params.node_count; i++) {
+		struct fdp_peer *peer = &m->peers[i];
+		const bool joiner = peer->state == FDP_PEER_JOINING && !peer->synced;
+
+		if ((joiner || (fdp_peer_counts(peer->state) && peer->wants_snapshot)) &&
+		    now_ns - peer->snapshot_ns >= m->params.probe_ns)
+			fdp_master_send_snapshot(m, i, now_ns);
+	}
+}
+
+int fdp_master_begin(struct fdp_master *m, const struct param_state *state, uint64_t frame,
+		     int64_t now_ns)
+{
+	uint64_t live;
+
+	if (m->underway)
+		return GR_ERR_STATE;
+	if (frame <= m->frame || param_newest(state) > frame)
+		return GR_ERR_RANGE;
+	param_state_copy(m->state, state);
+	m->previous_frame = m->frame;
+	m->previous_hash = m->hash;
+	m->frame = frame;
+	remember_hash(m);
+	m->loss -= m->loss > 0;
+	promote_joiners(m);
+	live = fdp_master_mask(m, fdp_peer_counts);
+	m->underway = true;
+	fdp_barrier_start(&m->barrier, frame, live, now_ns, m->params.deadline_ns);
+	m->probe_at = now_ns + m->params.probe_ns;
+	fdp_master_begin_repairs(m);
+	if (live) {
+		fdp_master_write_state(m, &m->delta, FDP_DELTA, common_base(m, live));
+		send_delta(m, live);
+	}
+	refresh_snapshots(m, now_ns);
+	fdp_master_finish_if_over(m, now_ns);
+	return GR_OK;
+}
+
+/* Marks who was not ready; they keep counting until they have missed too many. */
+static void mark_late(struct fdp_master *m)
+{
+	const uint64_t late = fdp_barrier_unready(&m->barrier);
+
+	for (size_t i = 0; i < m->params.node_count; i++) {
+		struct fdp_peer *peer = &m->peers[i];
+		struct fdp_master_event event = { .node = (int)i, .frame = m->frame };
+
+		if (!(late & BIT(i)))
+			continue;
+		peer->status.missed++;
+		peer->missed_row++;
+		peer->state = fdp_peer_next(peer->state, FDP_PEER_MISSES);
+		event.kind = FDP_MASTER_LATE;
+		fdp_master_say(m, &event);
+		if (peer->missed_row < m->params.evict_frames)
+			continue;
+		peer->state = fdp_peer_next(peer->state, FDP_PEER_EXPIRES);
+		event.kind = FDP_MASTER_EVICTED;
+		fdp_master_say(m, &event);
+	}
+}
+
+void fdp_master_finish_if_over(struct fdp_master *m, int64_t now_ns)
+{
+	const struct fdp_master_event swap = {
+		.kind = FDP_MASTER_SWAP, .node = FDP_TO_ALL, .frame = m->frame
+	};
+	uint64_t live;
+
+	if (!m->underway || !fdp_barrier_over(&m->barrier, now_ns))
+		return;
+	mark_late(m);
+	m->underway = false;
+	m->swapped = m->frame;
+	m->swapped_ns = now_ns;
+	live = fdp_master_mask(m, fdp_peer_counts);
+	if (live) {
+		fdp_master_announce_to(m, live, FDP_SWAP);
+		if (fdp_master_twice(m))
+			fdp_master_announce_to(m, live, FDP_SWAP);
+	}
+	fdp_master_say(m, &swap);
+}
+
+/* True when the node holds what we hold for a frame that we still know. */
+static bool state_agrees(struct fdp_master *m, unsigned node, const struct fdp_report *report,
+			 int64_t now_ns)
+{
+	struct fdp_peer *peer = &m->peers[node];
+	const unsigned slot = report->frame % FDP_HASH_RING;
+	struct fdp_master_event event = {
+		.kind = FDP_MASTER_MISMATCH, .node = (int)node, .frame = report->frame,
+		.ours = m->hashes[slot], .theirs = report->hash,
+	};
+
+	if (m->hash_frames[slot] != report->frame)
+		return false;
+	if (report->hash == m->hashes[slot])
+		return true;
+	fdp_master_want_snapshot(m, node);
+	if (report->frame == m->barrier.frame) {
+		m->barrier.acked &= ~BIT(node);
+		m->barrier.ready &= ~BIT(node);
+	}
+	if (report->frame != peer->mismatch_frame || !peer->status.mismatches) {
+		peer->mismatch_frame = report->frame;
+		peer->status.mismatches++;
+		fdp_master_say(m, &event);
+		fdp_master_send_snapshot(m, node, now_ns);
+	}
+	return false;
+}
+
+static void note_acked(struct fdp_master *m, unsigned node, const struct fdp_report *report)
+{
+	struct fdp_peer *peer = &m->peers[node];
+	const struct fdp_master_event joined = {
+		.kind = FDP_MASTER_JOINED, .node = (int)node, .frame = m->frame
+	};
+
+	if (peer->wants_snapshot && report->frame < peer->snapshot_from)
+		return; /* from before its state went wrong */
+	peer->wants_snapshot = false;
+	if (report->frame > peer->status.acked)
+		peer->status.acked = report->frame;
+	if (report->frame == m->barrier.frame)
+		m->barrier.acked |= BIT(node);
+	if (peer->state == FDP_PEER_JOINING && !peer->synced) {
+		peer->synced = true;
+		fdp_master_say(m, &joined);
+	}
+}
+
+static void on_ready(struct fdp_master *m, unsigned node, const struct fdp_report *report,
+		     int64_t now_ns)
+{
+	struct fdp_peer *peer = &m->peers[node];
+
+	if (report->frame > peer->status.ready)
+		peer->status.ready = report->frame;
+	peer->status.render_us = report->render_us;
+	if (!fdp_peer_counts(peer->state) || report->frame != m->frame)
+		return;
+	if (!m->underway) {
+		/* It has not seen the SWAP: lost, unless the two have just crossed. */
+		if (m->barrier.ready & BIT(node) && now_ns - m->swapped_ns > m->params.probe_ns / 4)
+			fdp_master_saw_loss(m);
+		fdp_master_announce(m, (int)node, FDP_SWAP);
+		return;
+	}
+	if (m->barrier.ready & BIT(node))
+		return;
+	peer->status.ready_after_ns = now_ns - m->barrier.begun_ns;
+	peer->missed_row = 0;
+	peer->state = fdp_peer_next(peer->state, FDP_PEER_READIES);
+	m->barrier.ready |= BIT(node);
+	fdp_master_finish_if_over(m, now_ns);
+}
+
+static void on_report(struct fdp_master *m, unsigned node, enum fdp_kind kind,
+		      const struct fdp_report *report, int64_t now_ns)
+{
+	struct fdp_peer_status *status = &m->peers[node].status;
+
+	if (report->swapped_count > status->swapped) {
+		status->swapped = report->swapped_count;
+		status->swapped_frame = report->swapped_frame;
+		status->swap_local_ns = report->swap_ns;
+	}
+	if (kind == FDP_SWAPPED || !state_agrees(m, node, report, now_ns))
+		return;
+	note_acked(m, node, report);
+	if (kind == FDP_READY)
+		on_ready(m, node, report, now_ns);
+}
+
+/* An authentic, new datagram of a present peer. */
+static enum fdp_verdict dispatch(struct fdp_master *m, const struct fdp_header *h,
+				 const uint8_t *body, int64_t now_ns)
+{
+	struct fdp_report report;
+	struct fdp_nack nack;
+	uint64_t frame;
+
+	switch (h->kind) {
+	case FDP_ACK:
+	case FDP_READY:
+	case FDP_SWAPPED:
+		if (fdp_report_decode(body, h->payload_len, &report) || report.frame > m->frame)
+			return FDP_BAD_FORMAT;
+		on_report(m, h->sender, h->kind, &report, now_ns);
+		return FDP_GOOD;
+	case FDP_NACK:
+		if (fdp_nack_decode(body, h->payload_len, &nack))
+			return FDP_BAD_FORMAT;
+		fdp_master_on_nack(m, h->sender, &nack, now_ns);
+		return FDP_GOOD;
+	case FDP_LEAVE:
+		if (fdp_leave_decode(body, h->payload_len, &frame))
+			return FDP_BAD_FORMAT;
+		fdp_master_on_leave(m, h->sender, now_ns);
+		return FDP_GOOD;
+	default:
+		return FDP_BAD_FORMAT;
+	}
+}
+
+/* A node that is not in the room but thinks so is told, rarely and briefly. */
+static void tell_stranger(struct fdp_master *m, unsigned node, int64_t now_ns)
+{
+	struct fdp_peer *peer = &m->peers[node];
+
+	if (peer->told_ns && now_ns - peer->told_ns < m->params.probe_ns)
+		return;
+	peer->told_ns = now_ns;
+	fdp_master_announce(m, (int)node, FDP_PROBE);
+}
+
+static enum fdp_verdict take(struct fdp_master *m, const struct fdp_header *h, const uint8_t *body,
+			     int64_t now_ns)
+{
+	struct fdp_peer *peer = &m->peers[h->sender];
+
+	if (h->kind == FDP_JOIN) {
+		struct fdp_join join;
+
+		if (h->session && h->session != m->params.session)
+			return FDP_BAD_SESSION;
+		if (fdp_join_decode(body, h->payload_len, &join) || join.index != h->sender)
+			return FDP_BAD_FORMAT;
+		fdp_master_on_join(m, h->sender, h, body, now_ns);
+		return FDP_GOOD;
+	}
+	if (peer->state == FDP_PEER_ABSENT && !peer->joins)
+		return FDP_BAD_SESSION;
+	if (!fdp_replay_take(&peer->window, h->sequence))
+		return FDP_BAD_REPLAY;
+	peer->status.last_heard_ns = now_ns;
+	if (!fdp_peer_present(peer->state)) {
+		if (h->kind != FDP_LEAVE)
+			tell_stranger(m, h->sender, now_ns);
+		return FDP_GOOD;
+	}
+	return dispatch(m, h, body, now_ns);
+}
+
+int fdp_master_receive(struct fdp_master *m, const uint8_t *bytes, size_t len, int64_t now_ns)
+{
+	struct fdp_header h;
+	enum fdp_verdict verdict = fdp_gate_open(&m->gate, bytes, len, &h);
+
+	m->counters.datagrams_in++;
+	m->counters.bytes_in += len;
+	if (verdict == FDP_GOOD)
+		verdict = take(m, &h, bytes + FDP_HEADER_BYTES, now_ns);
+	fdp_count_bad(&m->counters, verdict);
+	return verdict == FDP_GOOD ? h.sender : fdp_verdict_result(verdict);
+}
+
+/* Joiners are served and, when they fall silent, forgotten. */
+static void tend_joiners(struct fdp_master *m, int64_t now_ns)
+{
+	for (size_t i = 0; i < m->params.node_count; i++) {
+		struct fdp_peer *peer = &m->peers[i];
+		const struct fdp_master_event left = {
+			.kind = FDP_MASTER_LEFT, .node = (int)i, .frame = m->frame,
+			.reason = "silent while joining",
+		};
+
+		if (peer->state != FDP_PEER_JOINING ||
+		    now_ns - peer->status.last_heard_ns < FDP_JOIN_SILENCE_NS)
+			continue;
+		peer->state = fdp_peer_next(peer->state, FDP_PEER_EXPIRES);
+		fdp_master_say(m, &left);
+	}
+	refresh_snapshots(m, now_ns);
+}
+
+void fdp_master_tick(struct fdp_master *m, int64_t now_ns)
+{
+	tend_joiners(m, now_ns);
+	if (now_ns >= m->keepalive_at) {
+		/* Also how nodes that wait, or sit in an older session, find us. */
+		m->keepalive_at = now_ns + FDP_KEEPALIVE_NS;
+		fdp_master_announce(m, FDP_TO_ALL, FDP_PROBE);
+	}
+	if (!m->underway)
+		return;
+	if (now_ns >= m->probe_at && now_ns < m->barrier.deadline_ns) {
+		const uint64_t unacked = fdp_barrier_unacked(&m->barrier);
+
+		m->probe_at = now_ns + m->params.probe_ns;
+		if (unacked)
+			fdp_master_announce_to(m, unacked, FDP_PROBE);
+	}
+	fdp_master_finish_if_over(m, now_ns);
+}
+
+int64_t fdp_master_next(const struct fdp_master *m)
+{
+	int64_t next = m->keepalive_at;
+
+	for (size_t i = 0; i < m->params.node_count; i++) {
+		const struct fdp_peer *peer = &m->peers[i];
+		int64_t at = INT64_MAX;
+
+		if ((peer->state == FDP_PEER_JOINING && !peer->synced) ||
+		    (fdp_peer_counts(peer->state) && peer->wants_snapshot))
+			at = peer->snapshot_ns + m->params.probe_ns;
+		else if (peer->state == FDP_PEER_JOINING)
+			at = peer->status.last_heard_ns + FDP_JOIN_SILENCE_NS;
+		next = at < next ? at : next;
+	}
+	if (m->underway) {
+		if (fdp_barrier_unacked(&m->barrier) && m->probe_at < next)
+			next = m->probe_at;
+		if (m->barrier.deadline_ns < next)
+			next = m->barrier.deadline_ns;
+	}
+	return next;
+}
+
+void fdp_master_leave(struct fdp_master *m, int64_t now_ns)
+{
+	(void)now_ns;
+	/* Nobody answers to it: twice, so that one loss does not cost the nodes their time-out. */
+	for (int i = 0; i < 2; i++)
+		fdp_outbox_send(&m->out, FDP_TO_ALL, FDP_LEAVE,
+				fdp_leave_encode(m->frame, fdp_outbox_body(&m->out), FDP_BODY_MAX));
+}
+
+bool fdp_master_idle(const struct fdp_master *m)
+{
+	return !m->underway;
+}
+
+static size_t count_bits(uint64_t mask)
+{
+	return (size_t)__builtin_popcountll(mask);
+}
+
+size_t fdp_master_live(const struct fdp_master *m)
+{
+	return count_bits(fdp_master_mask(m, fdp_peer_counts));
+}
+
+size_t fdp_master_present(const struct fdp_master *m)
+{
+	return count_bits(fdp_master_mask(m, fdp_peer_present));
+}
+
+uint64_t fdp_master_hash(const struct fdp_master *m)
+{
+	return m->hash;
+}
+
+void fdp_master_peer(const struct fdp_master *m, size_t node, struct fdp_peer_status *out)
+{
+	*out = (struct fdp_peer_status){ .state = FDP_PEER_ABSENT };
+	if (node >= m->params.node_count)
+		return;
+	*out = m->peers[node].status;
+	out->state = m->peers[node].state;
+}
+
+void fdp_master_counters(const struct fdp_master *m, struct fdp_counters *out)
+{
+	*out = m->counters;
+}

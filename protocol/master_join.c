@@ -1,0 +1,197 @@
+/*
+ * Who may take part. A JOIN without a challenge is only answered, never
+ * acted on: it may be a recording. What acts is the second JOIN, which
+ * echoes a challenge that is bound to this session, this node's nonce and
+ * the number of its incarnations so far, so that none is good twice.
+ */
+#include "protocol/master_private.h"
+
+#include "base/cursor.h"
+#include "base/result.h"
+
+#include <sodium.h>
+#include <stdio.h>
+#include <string.h>
+
+#define BIT(node) (UINT64_C(1) << (node))
+
+static void make_challenge(const struct fdp_master *m, unsigned node,
+			   const uint8_t nonce[FDP_NONCE_BYTES],
+			   uint8_t challenge[FDP_NONCE_BYTES])
+{
+	static const char purpose[] = "fdp join challenge";
+	uint8_t text[sizeof purpose + 8 + 8 + 8 + FDP_NONCE_BYTES];
+	struct gr_writer w = gr_writer(text, sizeof text);
+
+	gr_write_bytes(&w, purpose, sizeof purpose);
+	gr_write_u64(&w, m->params.session);
+	gr_write_u64(&w, node);
+	gr_write_u64(&w, m->peers[node].joins);
+	gr_write_bytes(&w, nonce, FDP_NONCE_BYTES);
+	crypto_generichash(challenge, FDP_NONCE_BYTES, text, w.len, m->params.key, FDP_KEY_BYTES);
+}
+
+static void short_hex(const uint8_t hash[32], char text[17])
+{
+	sodium_bin2hex(text, 17, hash, 8);
+}
+
+static bool hashes_differ(const char *what, const uint8_t theirs[32], const uint8_t ours[32],
+			  char reason[FDP_REASON_MAX])
+{
+	char a[17], b[17];
+
+	if (!memcmp(theirs, ours, 32))
+		return false;
+	short_hex(theirs, a);
+	short_hex(ours, b);
+	snprintf(reason, FDP_REASON_MAX, "another %s: the node's hash is %s.., the master's %s..",
+		 what, a, b);
+	return true;
+}
+
+/* Writes both values into the reason: they must differ where a person can see it. */
+static bool refuses(const struct fdp_master *m, unsigned version, const struct fdp_join *join,
+		    char reason[FDP_REASON_MAX])
+{
+	const uint64_t table = param_table_hash();
+
+	if (version != FDP_VERSION || join->version != FDP_VERSION) {
+		snprintf(reason, FDP_REASON_MAX,
+			 "another protocol version: the node speaks %u, the master %u",
+			 (unsigned)(version != FDP_VERSION ? version : join->version), FDP_VERSION);
+		return true;
+	}
+	if (strcmp(join->name, m->names[join->index])) {
+		snprintf(reason, FDP_REASON_MAX,
+			 "another name: node %u calls itself '%s', the master's layout says '%s'",
+			 (unsigned)join->index, join->name, m->names[join->index]);
+		return true;
+	}
+	if (join->table_hash != table) {
+		snprintf(reason, FDP_REASON_MAX,
+			 "another parameter table: the node's hash is %016llx, the master's %016llx",
+			 (unsigned long long)join->table_hash, (unsigned long long)table);
+		return true;
+	}
+	return hashes_differ("layout", join->layout_hash, m->params.layout_hash, reason) ||
+	       hashes_differ("scene", join->scene_hash, m->params.scene_hash, reason);
+}
+
+static void refuse(struct fdp_master *m, unsigned node, const struct fdp_join *join,
+		   const char *reason, int64_t now_ns)
+{
+	struct fdp_peer *peer = &m->peers[node];
+	struct fdp_refuse answer;
+	const struct fdp_master_event event = {
+		.kind = FDP_MASTER_REFUSED, .node = (int)node, .frame = m->frame, .reason = reason
+	};
+
+	memcpy(answer.nonce, join->nonce, sizeof answer.nonce);
+	snprintf(answer.reason, sizeof answer.reason, "%s", reason);
+	fdp_outbox_send(&m->out, (int)node, FDP_REFUSE,
+			fdp_refuse_encode(&answer, fdp_outbox_body(&m->out), FDP_BODY_MAX));
+	/* A refused node asks for ever; the log need not say so each time. */
+	if (!strcmp(peer->refused, reason) && now_ns - peer->refused_ns < FDP_REFUSED_AGAIN_NS)
+		return;
+	snprintf(peer->refused, sizeof peer->refused, "%s", reason);
+	peer->refused_ns = now_ns;
+	fdp_master_say(m, &event);
+}
+
+static uint32_t clamp_us(int64_t ns)
+{
+	const int64_t us = ns / 1000;
+
+	return us < 1 ? 1 : us > UINT32_MAX ? UINT32_MAX : (uint32_t)us;
+}
+
+static void welcome(struct fdp_master *m, unsigned node, const struct fdp_join *join)
+{
+	struct fdp_welcome answer = {
+		.first_sequence = (m->peers[node].joins + 1) << FDP_INCARNATION_SHIFT,
+		.deadline_us = clamp_us(m->params.deadline_ns),
+		.probe_us = clamp_us(m->params.probe_ns),
+	};
+
+	memcpy(answer.nonce, join->nonce, sizeof answer.nonce);
+	make_challenge(m, node, join->nonce, answer.challenge);
+	fdp_outbox_send(&m->out, (int)node, FDP_WELCOME,
+			fdp_welcome_encode(&answer, fdp_outbox_body(&m->out), FDP_BODY_MAX));
+}
+
+static void count_out(struct fdp_master *m, unsigned node, const char *reason, int64_t now_ns)
+{
+	struct fdp_peer *peer = &m->peers[node];
+	const bool counted = fdp_peer_present(peer->state);
+	const struct fdp_master_event left = {
+		.kind = FDP_MASTER_LEFT, .node = (int)node, .frame = m->frame, .reason = reason
+	};
+
+	peer->state = fdp_peer_next(peer->state, FDP_PEER_LEAVES);
+	if (!counted)
+		return;
+	fdp_barrier_drop(&m->barrier, node);
+	fdp_master_say(m, &left);
+	fdp_master_finish_if_over(m, now_ns);
+}
+
+static void admit(struct fdp_master *m, unsigned node, const struct fdp_header *header,
+		  const struct fdp_join *join, int64_t now_ns)
+{
+	struct fdp_peer *peer = &m->peers[node];
+	const uint64_t first = (peer->joins + 1) << FDP_INCARNATION_SHIFT;
+
+	count_out(m, node, "joins anew", now_ns);
+	peer->joins++;
+	memcpy(peer->challenge, join->challenge, sizeof peer->challenge);
+	fdp_replay_start(&peer->window, first - 1);
+	fdp_replay_take(&peer->window, header->sequence);
+	peer->status = (struct fdp_peer_status){ .last_heard_ns = now_ns };
+	peer->synced = peer->wants_snapshot = false;
+	peer->missed_row = 0;
+	peer->mismatch_frame = 0;
+	peer->refused[0] = 0;
+	peer->state = fdp_peer_next(peer->state, FDP_PEER_JOINS);
+	fdp_master_send_snapshot(m, node, now_ns);
+}
+
+void fdp_master_on_join(struct fdp_master *m, unsigned node, const struct fdp_header *header,
+			const uint8_t *body, int64_t now_ns)
+{
+	struct fdp_peer *peer = &m->peers[node];
+	uint8_t expected[FDP_NONCE_BYTES];
+	char reason[FDP_REASON_MAX];
+	struct fdp_join join;
+
+	if (fdp_join_decode(body, header->payload_len, &join))
+		return;
+	if (refuses(m, header->version, &join, reason)) {
+		refuse(m, node, &join, reason, now_ns);
+		return;
+	}
+	if (!header->session) {
+		welcome(m, node, &join);
+		return;
+	}
+	/* Our snapshot was lost, or its acknowledgement. */
+	if (peer->state == FDP_PEER_JOINING &&
+	    !sodium_memcmp(join.challenge, peer->challenge, sizeof expected)) {
+		if (fdp_replay_take(&peer->window, header->sequence)) {
+			peer->status.last_heard_ns = now_ns;
+			if (now_ns - peer->snapshot_ns >= m->params.probe_ns)
+				fdp_master_send_snapshot(m, node, now_ns);
+		}
+		return;
+	}
+	make_challenge(m, node, join.nonce, expected);
+	if (!sodium_memcmp(join.challenge, expected, sizeof expected))
+		admit(m, node, header, &join, now_ns);
+	else
+		m->counters.bad_replay++;
+}
+
+void fdp_master_on_leave(struct fdp_master *m, unsigned node, int64_t now_ns)
+{
+	count_out(m, node, "said so", now_ns);
+}

@@ -1,0 +1,97 @@
+/*
+ * Inside the master's half of FDP: master.c has the frame, master_join.c who
+ * may take part, master_repair.c what is sent again.
+ */
+#ifndef GROTTO_PROTOCOL_MASTER_PRIVATE_H
+#define GROTTO_PROTOCOL_MASTER_PRIVATE_H
+
+#include "protocol/barrier.h"
+#include "protocol/master.h"
+#include "protocol/message.h"
+#include "protocol/outbox.h"
+#include "protocol/peer.h"
+#include "protocol/replay.h"
+#include "protocol/state.h"
+
+#define FDP_HASH_RING 64 /* frames whose hash an ACK may still name */
+#define FDP_KEEPALIVE_NS INT64_C(250000000)
+#define FDP_JOIN_SILENCE_NS INT64_C(2000000000)
+#define FDP_REFUSED_AGAIN_NS INT64_C(60000000000) /* a repeated reason is told once in this time */
+/* Sequences of a node's n-th incarnation start at n << this: older ones never pass. */
+#define FDP_INCARNATION_SHIFT 40
+/* Evidence of loss adds, a frame takes away; small messages go twice above. */
+#define FDP_LOSS_EVIDENCE 32
+#define FDP_LOSS_TWICE 64
+#define FDP_LOSS_MAX 256
+
+struct fdp_peer {
+	enum fdp_peer_state state;
+	struct fdp_peer_status status;
+	struct fdp_replay window;
+	uint64_t joins; /* incarnations taken in this session */
+	uint8_t challenge[FDP_NONCE_BYTES]; /* of the incarnation that is in */
+	bool synced;         /* has acknowledged a snapshot, waits for the next frame */
+	bool wants_snapshot; /* holds a wrong state, or cannot use the deltas */
+	uint64_t snapshot_from;  /* frame in which it was found to: what it held before is no base */
+	uint64_t mismatch_frame; /* counted once a frame */
+	unsigned missed_row;
+	int64_t snapshot_ns; /* last sent */
+	int64_t told_ns;     /* a dead one was told so */
+	int64_t refused_ns;
+	char refused[FDP_REASON_MAX];
+};
+
+struct fdp_master {
+	struct fdp_master_params params;
+	char names[FDP_MAX_NODES][FDP_NAME_BYTES];
+	struct fdp_master_ops ops;
+	struct fdp_counters counters;
+	struct fdp_gate gate;
+	struct fdp_outbox out;
+	struct fdp_peer peers[FDP_MAX_NODES];
+
+	struct param_state *state;
+	uint64_t frame, previous_frame, hash, previous_hash;
+	uint64_t hashes[FDP_HASH_RING], hash_frames[FDP_HASH_RING];
+	bool underway;
+	uint64_t swapped;
+	int64_t swapped_ns;
+	struct fdp_barrier barrier;
+
+	struct fdp_letter delta, snapshot;
+	uint64_t snapshot_present; /* whom the snapshot names as present */
+	int64_t repaired_ns[FDP_FRAGMENTS_MAX]; /* of delta, when sent to all again */
+	uint64_t repair_budget;                 /* bytes left in this frame */
+	unsigned loss;
+	int64_t probe_at, keepalive_at;
+};
+
+/* Bit sets over the peers. */
+uint64_t fdp_master_mask(const struct fdp_master *m, bool (*test)(enum fdp_peer_state));
+void fdp_master_say(struct fdp_master *m, const struct fdp_master_event *event);
+/* PROBE or SWAP with where we are. */
+void fdp_master_announce(struct fdp_master *m, int to, enum fdp_kind kind);
+/* To every node of the set, as one send where the wire can. */
+void fdp_master_announce_to(struct fdp_master *m, uint64_t nodes, enum fdp_kind kind);
+void fdp_master_finish_if_over(struct fdp_master *m, int64_t now_ns);
+/* Writes head and delta since base as the plain bytes of a letter. */
+void fdp_master_write_state(struct fdp_master *m, struct fdp_letter *letter, enum fdp_kind kind,
+			    uint64_t base);
+
+void fdp_master_on_join(struct fdp_master *m, unsigned node, const struct fdp_header *header,
+			const uint8_t *body, int64_t now_ns);
+void fdp_master_on_leave(struct fdp_master *m, unsigned node, int64_t now_ns);
+
+void fdp_master_send_snapshot(struct fdp_master *m, unsigned node, int64_t now_ns);
+/* What the node holds is wrong or useless: nothing that it acknowledged is a base. */
+void fdp_master_want_snapshot(struct fdp_master *m, unsigned node);
+void fdp_master_on_nack(struct fdp_master *m, unsigned node, const struct fdp_nack *nack,
+			int64_t now_ns);
+void fdp_master_begin_repairs(struct fdp_master *m);
+void fdp_master_saw_loss(struct fdp_master *m);
+static inline bool fdp_master_twice(const struct fdp_master *m)
+{
+	return m->loss >= FDP_LOSS_TWICE;
+}
+
+#endif

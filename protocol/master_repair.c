@@ -1,0 +1,102 @@
+/*
+ * What is sent again. On a multicast wire a repair goes to all, and answers
+ * everybody who asks within a short window; on a unicast wire it goes to who
+ * asked. Either way a frame has a budget, so that no amount of asking can
+ * fill the wire: what is left out is healed by the next frame's delta.
+ */
+#include "protocol/master_private.h"
+
+#include <string.h>
+
+void fdp_master_saw_loss(struct fdp_master *m)
+{
+	m->loss += FDP_LOSS_EVIDENCE;
+	if (m->loss > FDP_LOSS_MAX)
+		m->loss = FDP_LOSS_MAX;
+}
+
+void fdp_master_begin_repairs(struct fdp_master *m)
+{
+	const size_t message = FDP_STATE_HEAD_BYTES + param_delta_max();
+	const size_t count = fdp_fragment_count(message, m->out.datagram_max);
+	const uint64_t readers = m->params.multicast ? 4 : m->params.node_count * 4;
+
+	m->repair_budget = (8 + readers) * (message + count * FDP_HEADER_BYTES);
+	for (size_t i = 0; i < count; i++)
+		m->repaired_ns[i] = INT64_MIN;
+}
+
+void fdp_master_want_snapshot(struct fdp_master *m, unsigned node)
+{
+	struct fdp_peer *peer = &m->peers[node];
+
+	peer->status.acked = 0;
+	peer->synced = false;
+	peer->wants_snapshot = true;
+	peer->snapshot_from = m->frame;
+}
+
+void fdp_master_send_snapshot(struct fdp_master *m, unsigned node, int64_t now_ns)
+{
+	const uint64_t present = fdp_master_mask(m, fdp_peer_present);
+
+	/* One for all who want it in this frame; made anew when the room has changed. */
+	if (!m->snapshot.number || m->snapshot.frame != m->frame ||
+	    m->snapshot_present != present)
+		fdp_master_write_state(m, &m->snapshot, FDP_SNAPSHOT, 0);
+	m->snapshot_present = present;
+	m->peers[node].snapshot_ns = now_ns;
+	fdp_outbox_post(&m->out, (int)node, &m->snapshot);
+}
+
+static bool spend(struct fdp_master *m, const struct fdp_letter *letter, unsigned index)
+{
+	size_t len;
+
+	fdp_fragment_at(letter->len, m->out.datagram_max, index, &len);
+	len += FDP_HEADER_BYTES;
+	if (m->repair_budget < len)
+		return false;
+	m->repair_budget -= len;
+	return true;
+}
+
+static void repair(struct fdp_master *m, unsigned node, const struct fdp_letter *letter,
+		   unsigned index, int64_t now_ns)
+{
+	const bool all = letter == &m->delta && m->params.multicast;
+
+	if (all && m->repaired_ns[index] != INT64_MIN &&
+	    now_ns - m->repaired_ns[index] < m->params.probe_ns / 4)
+		return;
+	if (!spend(m, letter, index))
+		return;
+	if (all)
+		m->repaired_ns[index] = now_ns;
+	m->counters.repairs++;
+	fdp_outbox_fragment(&m->out, all ? FDP_TO_ALL : (int)node, letter, index);
+}
+
+void fdp_master_on_nack(struct fdp_master *m, unsigned node, const struct fdp_nack *nack,
+			int64_t now_ns)
+{
+	struct fdp_peer *peer = &m->peers[node];
+	const struct fdp_letter *letter;
+
+	if (nack->flags & FDP_NACK_SNAPSHOT) {
+		fdp_master_want_snapshot(m, node);
+		if (now_ns - peer->snapshot_ns >= m->params.probe_ns)
+			fdp_master_send_snapshot(m, node, now_ns);
+		return;
+	}
+	letter = nack->message == m->delta.number	   ? &m->delta
+		 : nack->message == m->snapshot.number ? &m->snapshot
+						       : NULL;
+	/* Something older: the next delta carries it too. */
+	if (!letter || letter->frame != m->frame || nack->count != letter->count)
+		return;
+	fdp_master_saw_loss(m);
+	for (unsigned i = 0; i < letter->count; i++)
+		if (fdp_bit(nack->missing, i))
+			repair(m, node, letter, i, now_ns);
+}

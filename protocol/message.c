@@ -1,0 +1,269 @@
+#include "protocol/message.h"
+
+#include "base/cursor.h"
+#include "base/result.h"
+
+#define JOIN_USED 144
+
+static size_t written(const struct gr_writer *w)
+{
+	return w->ok ? w->len : 0;
+}
+
+static int finished(const struct gr_reader *r)
+{
+	return gr_reader_done(r) ? GR_OK : GR_ERR_FORMAT;
+}
+
+static void read_into(struct gr_reader *r, void *to, size_t n)
+{
+	const uint8_t *p = gr_read_bytes(r, n);
+
+	if (p)
+		memcpy(to, p, n);
+	else
+		memset(to, 0, n);
+}
+
+/* Text from outside ends up in logs: printable ASCII only. */
+static bool printable(const char *text, size_t len)
+{
+	for (size_t i = 0; i < len; i++)
+		if (text[i] < 0x20 || text[i] > 0x7e)
+			return false;
+	return true;
+}
+
+size_t fdp_join_encode(const struct fdp_join *m, uint8_t *bytes, size_t size)
+{
+	static const uint8_t zero[FDP_JOIN_BYTES - JOIN_USED];
+	struct gr_writer w = gr_writer(bytes, size);
+
+	gr_write_u16(&w, m->version);
+	gr_write_u16(&w, m->index);
+	gr_write_u32(&w, 0);
+	gr_write_bytes(&w, m->nonce, sizeof m->nonce);
+	gr_write_bytes(&w, m->challenge, sizeof m->challenge);
+	gr_write_bytes(&w, m->layout_hash, sizeof m->layout_hash);
+	gr_write_bytes(&w, m->scene_hash, sizeof m->scene_hash);
+	gr_write_u64(&w, m->table_hash);
+	gr_write_bytes(&w, m->name, sizeof m->name);
+	gr_write_bytes(&w, zero, sizeof zero);
+	return written(&w);
+}
+
+int fdp_join_decode(const uint8_t *bytes, size_t len, struct fdp_join *out)
+{
+	struct gr_reader r = gr_reader(bytes, len);
+	uint32_t reserved;
+	const uint8_t *pad;
+	uint8_t any = 0;
+	size_t name_len;
+
+	out->version = gr_read_u16(&r);
+	out->index = gr_read_u16(&r);
+	reserved = gr_read_u32(&r);
+	read_into(&r, out->nonce, sizeof out->nonce);
+	read_into(&r, out->challenge, sizeof out->challenge);
+	read_into(&r, out->layout_hash, sizeof out->layout_hash);
+	read_into(&r, out->scene_hash, sizeof out->scene_hash);
+	out->table_hash = gr_read_u64(&r);
+	read_into(&r, out->name, sizeof out->name);
+	pad = gr_read_bytes(&r, FDP_JOIN_BYTES - JOIN_USED);
+	for (size_t i = 0; pad && i < FDP_JOIN_BYTES - JOIN_USED; i++)
+		any |= pad[i];
+	name_len = strnlen(out->name, sizeof out->name);
+	for (size_t i = name_len; i < sizeof out->name; i++)
+		any |= (uint8_t)out->name[i];
+	if (any || reserved || !name_len || name_len == sizeof out->name ||
+	    !printable(out->name, name_len))
+		return GR_ERR_FORMAT;
+	return finished(&r);
+}
+
+size_t fdp_welcome_encode(const struct fdp_welcome *m, uint8_t *bytes, size_t size)
+{
+	struct gr_writer w = gr_writer(bytes, size);
+
+	gr_write_bytes(&w, m->nonce, sizeof m->nonce);
+	gr_write_bytes(&w, m->challenge, sizeof m->challenge);
+	gr_write_u64(&w, m->first_sequence);
+	gr_write_u32(&w, m->deadline_us);
+	gr_write_u32(&w, m->probe_us);
+	return written(&w);
+}
+
+int fdp_welcome_decode(const uint8_t *bytes, size_t len, struct fdp_welcome *out)
+{
+	struct gr_reader r = gr_reader(bytes, len);
+
+	read_into(&r, out->nonce, sizeof out->nonce);
+	read_into(&r, out->challenge, sizeof out->challenge);
+	out->first_sequence = gr_read_u64(&r);
+	out->deadline_us = gr_read_u32(&r);
+	out->probe_us = gr_read_u32(&r);
+	if (!out->first_sequence || !out->deadline_us || !out->probe_us)
+		return GR_ERR_FORMAT;
+	return finished(&r);
+}
+
+size_t fdp_refuse_encode(const struct fdp_refuse *m, uint8_t *bytes, size_t size)
+{
+	struct gr_writer w = gr_writer(bytes, size);
+	const size_t len = strnlen(m->reason, sizeof m->reason - 1);
+
+	gr_write_bytes(&w, m->nonce, sizeof m->nonce);
+	gr_write_u16(&w, (uint16_t)len);
+	gr_write_bytes(&w, m->reason, len);
+	return written(&w);
+}
+
+int fdp_refuse_decode(const uint8_t *bytes, size_t len, struct fdp_refuse *out)
+{
+	struct gr_reader r = gr_reader(bytes, len);
+	size_t n;
+
+	memset(out->reason, 0, sizeof out->reason);
+	read_into(&r, out->nonce, sizeof out->nonce);
+	n = gr_read_u16(&r);
+	if (n >= sizeof out->reason)
+		return GR_ERR_FORMAT;
+	read_into(&r, out->reason, n);
+	return printable(out->reason, n) ? finished(&r) : GR_ERR_FORMAT;
+}
+
+size_t fdp_report_encode(const struct fdp_report *m, uint8_t *bytes, size_t size)
+{
+	struct gr_writer w = gr_writer(bytes, size);
+
+	gr_write_u64(&w, m->frame);
+	gr_write_u64(&w, m->hash);
+	gr_write_u64(&w, m->swapped_frame);
+	gr_write_u64(&w, m->swapped_count);
+	gr_write_u64(&w, (uint64_t)m->swap_ns);
+	gr_write_u32(&w, m->render_us);
+	gr_write_u32(&w, 0);
+	return written(&w);
+}
+
+int fdp_report_decode(const uint8_t *bytes, size_t len, struct fdp_report *out)
+{
+	struct gr_reader r = gr_reader(bytes, len);
+
+	out->frame = gr_read_u64(&r);
+	out->hash = gr_read_u64(&r);
+	out->swapped_frame = gr_read_u64(&r);
+	out->swapped_count = gr_read_u64(&r);
+	out->swap_ns = (int64_t)gr_read_u64(&r);
+	out->render_us = gr_read_u32(&r);
+	return gr_read_u32(&r) ? GR_ERR_FORMAT : finished(&r);
+}
+
+size_t fdp_nack_encode(const struct fdp_nack *m, uint8_t *bytes, size_t size)
+{
+	struct gr_writer w = gr_writer(bytes, size);
+
+	gr_write_u64(&w, m->frame);
+	gr_write_u64(&w, m->message);
+	gr_write_u16(&w, m->flags);
+	gr_write_u16(&w, m->count);
+	gr_write_bytes(&w, m->missing, (m->count + 7u) / 8u);
+	return written(&w);
+}
+
+int fdp_nack_decode(const uint8_t *bytes, size_t len, struct fdp_nack *out)
+{
+	struct gr_reader r = gr_reader(bytes, len);
+
+	memset(out->missing, 0, sizeof out->missing);
+	out->frame = gr_read_u64(&r);
+	out->message = gr_read_u64(&r);
+	out->flags = gr_read_u16(&r);
+	out->count = gr_read_u16(&r);
+	if (out->count > FDP_FRAGMENTS_MAX || out->flags & ~FDP_NACK_SNAPSHOT ||
+	    !out->count != !!(out->flags & FDP_NACK_SNAPSHOT))
+		return GR_ERR_FORMAT;
+	read_into(&r, out->missing, (out->count + 7u) / 8u);
+	/* No bits beyond the last fragment. */
+	if (out->count % 8 && out->missing[out->count / 8] >> out->count % 8)
+		return GR_ERR_FORMAT;
+	return finished(&r);
+}
+
+size_t fdp_announce_encode(const struct fdp_announce *m, uint8_t *bytes, size_t size)
+{
+	struct gr_writer w = gr_writer(bytes, size);
+
+	gr_write_u64(&w, m->frame);
+	gr_write_u64(&w, m->swapped);
+	gr_write_u64(&w, m->message);
+	gr_write_u64(&w, m->live);
+	gr_write_u64(&w, m->present);
+	gr_write_u16(&w, m->count);
+	gr_write_u16(&w, m->flags);
+	return written(&w);
+}
+
+int fdp_announce_decode(const uint8_t *bytes, size_t len, struct fdp_announce *out)
+{
+	struct gr_reader r = gr_reader(bytes, len);
+
+	out->frame = gr_read_u64(&r);
+	out->swapped = gr_read_u64(&r);
+	out->message = gr_read_u64(&r);
+	out->live = gr_read_u64(&r);
+	out->present = gr_read_u64(&r);
+	out->count = gr_read_u16(&r);
+	out->flags = gr_read_u16(&r);
+	if (out->count > FDP_FRAGMENTS_MAX || !out->message != !out->count ||
+	    out->swapped > out->frame || out->live & ~out->present || out->flags & ~FDP_TWICE)
+		return GR_ERR_FORMAT;
+	return finished(&r);
+}
+
+size_t fdp_leave_encode(uint64_t frame, uint8_t *bytes, size_t size)
+{
+	struct gr_writer w = gr_writer(bytes, size);
+
+	gr_write_u64(&w, frame);
+	return written(&w);
+}
+
+int fdp_leave_decode(const uint8_t *bytes, size_t len, uint64_t *out_frame)
+{
+	struct gr_reader r = gr_reader(bytes, len);
+
+	*out_frame = gr_read_u64(&r);
+	return finished(&r);
+}
+
+size_t fdp_state_head_encode(const struct fdp_state_head *m, uint8_t *bytes, size_t size)
+{
+	struct gr_writer w = gr_writer(bytes, size);
+
+	gr_write_u64(&w, m->frame);
+	gr_write_u64(&w, m->previous_frame);
+	gr_write_u64(&w, m->hash);
+	gr_write_u64(&w, m->previous_hash);
+	gr_write_u64(&w, m->live);
+	gr_write_u64(&w, m->present);
+	gr_write_u32(&w, m->flags);
+	return written(&w);
+}
+
+int fdp_state_head_decode(const uint8_t *bytes, size_t len, struct fdp_state_head *out)
+{
+	struct gr_reader r = gr_reader(bytes, len);
+
+	out->frame = gr_read_u64(&r);
+	out->previous_frame = gr_read_u64(&r);
+	out->hash = gr_read_u64(&r);
+	out->previous_hash = gr_read_u64(&r);
+	out->live = gr_read_u64(&r);
+	out->present = gr_read_u64(&r);
+	out->flags = gr_read_u32(&r);
+	if (!r.ok || out->flags & ~FDP_TWICE || out->live & ~out->present ||
+	    (out->frame ? out->previous_frame >= out->frame : out->previous_frame))
+		return GR_ERR_FORMAT;
+	return GR_OK;
+}

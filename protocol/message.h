@@ -1,0 +1,91 @@
+/*
+ * The bodies of FDP messages. Encoders return the number of bytes written (0
+ * when the room is too small), decoders GR_OK or GR_ERR_FORMAT: they take a
+ * body only whole, with nothing left over and reserved bytes zero.
+ */
+#ifndef GROTTO_PROTOCOL_MESSAGE_H
+#define GROTTO_PROTOCOL_MESSAGE_H
+
+#include "protocol/fragment.h"
+
+#define FDP_NONCE_BYTES 16
+#define FDP_NAME_BYTES 32 /* with the final NUL */
+/* Padded: what answers a JOIN is never longer than the JOIN. */
+#define FDP_JOIN_BYTES 256
+#define FDP_BODY_MAX 256
+
+struct fdp_join {
+	uint16_t version, index;
+	uint8_t nonce[FDP_NONCE_BYTES];     /* the node's, new for each time it joins */
+	uint8_t challenge[FDP_NONCE_BYTES]; /* the master's, zero in the first JOIN */
+	uint8_t layout_hash[32], scene_hash[32];
+	uint64_t table_hash; /* of the parameter table */
+	char name[FDP_NAME_BYTES];
+};
+
+struct fdp_welcome {
+	uint8_t nonce[FDP_NONCE_BYTES]; /* the JOIN's */
+	uint8_t challenge[FDP_NONCE_BYTES];
+	uint64_t first_sequence; /* the node's sequence numbers start here */
+	uint32_t deadline_us, probe_us;
+};
+
+struct fdp_refuse {
+	uint8_t nonce[FDP_NONCE_BYTES];
+	char reason[FDP_REASON_MAX]; /* printable ASCII, NUL-terminated here */
+};
+
+/* ACK, READY, SWAPPED. */
+struct fdp_report {
+	uint64_t frame, hash; /* hash of the state of `frame`; 0 in SWAPPED */
+	uint64_t swapped_frame, swapped_count;
+	int64_t swap_ns; /* node's CLOCK_MONOTONIC at swapped_frame */
+	uint32_t render_us;
+};
+
+#define FDP_NACK_SNAPSHOT 1u /* cannot use what came: send the whole state */
+struct fdp_nack {
+	uint64_t frame, message;
+	uint16_t flags;
+	uint16_t count; /* fragments of the message; 0 with FDP_NACK_SNAPSHOT */
+	uint8_t missing[FDP_BITMAP_BYTES];
+};
+
+#define FDP_TWICE 1u /* the way is lossy: READY is worth sending twice */
+/* PROBE and SWAP. */
+struct fdp_announce {
+	uint64_t frame, swapped; /* under way (or last), last swapped */
+	uint64_t message;        /* that carries frame's delta; 0: none */
+	uint64_t live, present;  /* bit i: node i counts in the barrier; is known */
+	uint16_t count;          /* fragments of that message */
+	uint16_t flags;
+};
+
+/* What precedes the delta in DELTA and SNAPSHOT. */
+struct fdp_state_head {
+	uint64_t frame, previous_frame;
+	uint64_t hash, previous_hash;
+	uint64_t live, present;
+	uint32_t flags;
+};
+#define FDP_STATE_HEAD_BYTES 52
+
+size_t fdp_join_encode(const struct fdp_join *m, uint8_t *bytes, size_t size);
+int fdp_join_decode(const uint8_t *bytes, size_t len, struct fdp_join *out);
+size_t fdp_welcome_encode(const struct fdp_welcome *m, uint8_t *bytes, size_t size);
+int fdp_welcome_decode(const uint8_t *bytes, size_t len, struct fdp_welcome *out);
+size_t fdp_refuse_encode(const struct fdp_refuse *m, uint8_t *bytes, size_t size);
+int fdp_refuse_decode(const uint8_t *bytes, size_t len, struct fdp_refuse *out);
+size_t fdp_report_encode(const struct fdp_report *m, uint8_t *bytes, size_t size);
+int fdp_report_decode(const uint8_t *bytes, size_t len, struct fdp_report *out);
+size_t fdp_nack_encode(const struct fdp_nack *m, uint8_t *bytes, size_t size);
+int fdp_nack_decode(const uint8_t *bytes, size_t len, struct fdp_nack *out);
+size_t fdp_announce_encode(const struct fdp_announce *m, uint8_t *bytes, size_t size);
+int fdp_announce_decode(const uint8_t *bytes, size_t len, struct fdp_announce *out);
+size_t fdp_leave_encode(uint64_t frame, uint8_t *bytes, size_t size);
+int fdp_leave_decode(const uint8_t *bytes, size_t len, uint64_t *out_frame);
+size_t fdp_state_head_encode(const struct fdp_state_head *m, uint8_t *bytes, size_t size);
+/* The delta is what follows: bytes + FDP_STATE_HEAD_BYTES. */
+int fdp_state_head_decode(const uint8_t *bytes, size_t len, struct fdp_state_head *out);
+
+#endif

@@ -1,0 +1,326 @@
+#include "protocol/node_private.h"
+
+#include "base/result.h"
+
+#include <sodium.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define NODE_KINDS (1u << FDP_WELCOME | 1u << FDP_REFUSE | 1u << FDP_SNAPSHOT | 1u << FDP_DELTA | \
+		    1u << FDP_PROBE | 1u << FDP_SWAP | 1u << FDP_LEAVE)
+/* A REFUSED is told again after this, even if nothing has changed. */
+#define REFUSED_AGAIN_NS INT64_C(60000000000)
+
+static const char *const state_names[] = {
+	[FDP_NODE_ALONE] = "alone", [FDP_NODE_ASKING] = "asking",
+	[FDP_NODE_WAITING_SNAPSHOT] = "waiting for the snapshot", [FDP_NODE_LIVE] = "live",
+};
+
+const char *fdp_node_state_name(enum fdp_node_state state)
+{
+	return (unsigned)state < sizeof state_names / sizeof *state_names ? state_names[state]
+									   : "unknown";
+}
+
+static void to_caller(void *ctx, int to, const uint8_t *bytes, size_t len)
+{
+	struct fdp_node *n = ctx;
+
+	(void)to;
+	n->ops.send(n->ops.ctx, bytes, len);
+}
+
+static void say_reason(struct fdp_node *n, enum fdp_node_event_kind kind, const char *reason)
+{
+	const struct fdp_node_event event = {
+		.kind = kind, .frame = n->applied, .reason = reason
+	};
+
+	n->ops.event(n->ops.ctx, &event);
+}
+
+void fdp_node_say(struct fdp_node *n, enum fdp_node_event_kind kind, uint64_t frame)
+{
+	const struct fdp_node_event event = { .kind = kind, .frame = frame };
+
+	n->ops.event(n->ops.ctx, &event);
+}
+
+int fdp_node_create(struct fdp_node **out, const struct fdp_node_params *params,
+		    const struct fdp_node_ops *ops)
+{
+	struct fdp_node *n;
+	int result;
+
+	*out = NULL;
+	if (params->index >= FDP_MAX_NODES || !params->name || !params->name[0] ||
+	    strlen(params->name) >= FDP_NAME_BYTES || params->datagram_max < FDP_DATAGRAM_MIN ||
+	    params->datagram_max > FDP_DATAGRAM_MAX || params->join_ns < 0 ||
+	    params->silence_ns < 0 || !ops->send || !ops->event)
+		return GR_ERR_RANGE;
+	n = calloc(1, sizeof *n);
+	if (!n)
+		return GR_ERR_NOMEM;
+	n->params = *params;
+	strcpy(n->name, params->name);
+	n->params.name = n->name;
+	if (!n->params.join_ns)
+		n->params.join_ns = FDP_JOIN_DEFAULT_NS;
+	if (!n->params.silence_ns)
+		n->params.silence_ns = FDP_SILENCE_DEFAULT_NS;
+	n->ops = *ops;
+	n->gate = (struct fdp_gate){
+		.key = n->params.key,
+		.kinds = NODE_KINDS,
+		.any_session_kinds = 1u << FDP_WELCOME | 1u << FDP_REFUSE,
+		.any_version_kinds = 1u << FDP_REFUSE,
+		.first_sender = FDP_SENDER_MASTER,
+		.last_sender = FDP_SENDER_MASTER,
+	};
+	n->out = (struct fdp_outbox){
+		.key = n->params.key,
+		.sender = params->index,
+		.datagram_max = params->datagram_max,
+		.fan_out = 1,
+		.counters = &n->counters,
+		.send = to_caller,
+		.ctx = n,
+	};
+	result = fdp_outbox_init(&n->out);
+	if (!result)
+		result = param_state_create(&n->state);
+	if (!result)
+		result = param_state_create(&n->scratch);
+	if (result) {
+		fdp_node_destroy(&n);
+		return result;
+	}
+	randombytes_buf(n->nonce, sizeof n->nonce);
+	*out = n;
+	return GR_OK;
+}
+
+void fdp_node_destroy(struct fdp_node **node)
+{
+	struct fdp_node *n = *node;
+
+	*node = NULL;
+	if (!n)
+		return;
+	fdp_outbox_finish(&n->out);
+	param_state_destroy(&n->state);
+	param_state_destroy(&n->scratch);
+	sodium_memzero(n->params.key, sizeof n->params.key);
+	free(n);
+}
+
+/* session 0 asks; the session of a WELCOME, with its challenge, confirms. */
+static void send_join(struct fdp_node *n, uint64_t session, int64_t now_ns)
+{
+	const uint64_t own = n->out.session;
+	struct fdp_join join = {
+		.version = FDP_VERSION,
+		.index = n->params.index,
+		.table_hash = param_table_hash(),
+	};
+
+	memcpy(join.nonce, session ? n->joined_nonce : n->nonce, sizeof join.nonce);
+	if (session)
+		memcpy(join.challenge, n->challenge, sizeof join.challenge);
+	memcpy(join.layout_hash, n->params.layout_hash, sizeof join.layout_hash);
+	memcpy(join.scene_hash, n->params.scene_hash, sizeof join.scene_hash);
+	memcpy(join.name, n->name, sizeof join.name);
+	n->asked_ns = now_ns;
+	n->asked = true;
+	n->out.session = session;
+	fdp_outbox_send(&n->out, FDP_TO_ALL, FDP_JOIN,
+			fdp_join_encode(&join, fdp_outbox_body(&n->out), FDP_BODY_MAX));
+	n->out.session = own;
+}
+
+static void enter_session(struct fdp_node *n, uint64_t session, int64_t now_ns)
+{
+	n->gate.session = n->out.session = session;
+	n->heard_ns = now_ns;
+	fdp_node_frame_reset(n);
+}
+
+void fdp_node_ask_again(struct fdp_node *n, enum fdp_node_event_kind kind, const char *reason)
+{
+	n->status = FDP_NODE_ASKING;
+	n->gate.session = n->out.session = 0;
+	n->asked = false; /* at once */
+	randombytes_buf(n->nonce, sizeof n->nonce);
+	say_reason(n, kind, reason);
+	fdp_node_frame_reset(n);
+}
+
+static enum fdp_verdict on_welcome(struct fdp_node *n, const struct fdp_header *h,
+				   const uint8_t *body, int64_t now_ns)
+{
+	struct fdp_welcome w;
+
+	if (!h->session || fdp_welcome_decode(body, h->payload_len, &w))
+		return FDP_BAD_FORMAT;
+	if (sodium_memcmp(w.nonce, n->nonce, sizeof w.nonce))
+		return FDP_BAD_REPLAY;
+	/* We asked because something spoke of another session; this is our own master. */
+	if (h->session == n->gate.session)
+		return FDP_GOOD;
+	memcpy(n->challenge, w.challenge, sizeof n->challenge);
+	/* No WELCOME is good twice: the next one must echo another nonce. */
+	memcpy(n->joined_nonce, n->nonce, sizeof n->joined_nonce);
+	randombytes_buf(n->nonce, sizeof n->nonce);
+	n->retry_ns = (int64_t)w.probe_us * 1000;
+	n->out.sequence = w.first_sequence - 1;
+	fdp_replay_start(&n->window, h->sequence);
+	enter_session(n, h->session, now_ns);
+	n->status = FDP_NODE_WAITING_SNAPSHOT;
+	n->refused[0] = 0;
+	send_join(n, h->session, now_ns);
+	fdp_node_say(n, FDP_NODE_JOINED, 0);
+	return FDP_GOOD;
+}
+
+static enum fdp_verdict on_refuse(struct fdp_node *n, const struct fdp_header *h,
+				  const uint8_t *body, int64_t now_ns)
+{
+	struct fdp_refuse r;
+
+	if (fdp_refuse_decode(body, h->payload_len, &r))
+		return FDP_BAD_FORMAT;
+	if (sodium_memcmp(r.nonce, n->nonce, sizeof r.nonce))
+		return FDP_BAD_REPLAY;
+	if (!strcmp(r.reason, n->refused) && now_ns - n->refused_ns < REFUSED_AGAIN_NS)
+		return FDP_GOOD;
+	memcpy(n->refused, r.reason, sizeof n->refused);
+	n->refused_ns = now_ns;
+	say_reason(n, FDP_NODE_REFUSED, n->refused);
+	return FDP_GOOD;
+}
+
+static enum fdp_verdict in_session(struct fdp_node *n, const struct fdp_header *h,
+				   const uint8_t *body, int64_t now_ns)
+{
+	uint64_t frame;
+
+	if (!fdp_replay_take(&n->window, h->sequence))
+		return FDP_BAD_REPLAY;
+	n->heard_ns = now_ns;
+	switch (h->kind) {
+	case FDP_SNAPSHOT:
+	case FDP_DELTA:
+		return fdp_node_on_state(n, h, body, now_ns);
+	case FDP_PROBE:
+	case FDP_SWAP:
+		return fdp_node_on_announce(n, h, body, now_ns);
+	case FDP_LEAVE:
+		if (fdp_leave_decode(body, h->payload_len, &frame))
+			return FDP_BAD_FORMAT;
+		fdp_node_ask_again(n, FDP_NODE_MASTER_LEFT, "the master goes");
+		/* Its successor needs a moment. */
+		n->asked = true;
+		n->asked_ns = now_ns;
+		return FDP_GOOD;
+	default:
+		return FDP_BAD_FORMAT;
+	}
+}
+
+int fdp_node_receive(struct fdp_node *n, const uint8_t *bytes, size_t len, int64_t now_ns)
+{
+	const uint8_t *body = bytes + FDP_HEADER_BYTES;
+	struct fdp_header h;
+	enum fdp_verdict verdict = fdp_gate_open(&n->gate, bytes, len, &h);
+
+	n->counters.datagrams_in++;
+	n->counters.bytes_in += len;
+	if (verdict == FDP_BAD_SESSION && n->status != FDP_NODE_ALONE) {
+		/*
+		 * A key holder speaks of another session: a new master, or a
+		 * recording. Asking shows which, and changes nothing here until
+		 * the answer echoes our nonce.
+		 */
+		if (!n->asked || now_ns - n->asked_ns >= n->params.join_ns)
+			send_join(n, 0, now_ns);
+		if (!n->gate.session) {
+			/* Nothing bad while we are in no session: a master that we are asking. */
+			return GR_ERR_MISMATCH;
+		}
+	} else if (verdict == FDP_GOOD) {
+		if (h.kind == FDP_WELCOME)
+			verdict = on_welcome(n, &h, body, now_ns);
+		else if (h.kind == FDP_REFUSE)
+			verdict = on_refuse(n, &h, body, now_ns);
+		else
+			verdict = n->gate.session ? in_session(n, &h, body, now_ns) : FDP_BAD_SESSION;
+	}
+	fdp_count_bad(&n->counters, verdict);
+	return fdp_verdict_result(verdict);
+}
+
+void fdp_node_tick(struct fdp_node *n, int64_t now_ns)
+{
+	if (n->status >= FDP_NODE_WAITING_SNAPSHOT &&
+	    now_ns - n->heard_ns >= n->params.silence_ns)
+		fdp_node_ask_again(n, FDP_NODE_LOST, "nothing from the master");
+	if (n->status == FDP_NODE_ALONE)
+		n->status = FDP_NODE_ASKING;
+	if (n->status == FDP_NODE_LIVE) {
+		fdp_node_frame_tick(n, now_ns);
+		return;
+	}
+	if (!n->asked || now_ns - n->asked_ns >= n->params.join_ns)
+		send_join(n, n->gate.session, now_ns);
+}
+
+int64_t fdp_node_next(const struct fdp_node *n)
+{
+	int64_t next = INT64_MAX, frame_next;
+
+	if (n->status == FDP_NODE_ALONE)
+		return 0;
+	if (n->status >= FDP_NODE_WAITING_SNAPSHOT)
+		next = n->heard_ns + n->params.silence_ns;
+	if (n->status != FDP_NODE_LIVE) {
+		const int64_t ask = n->asked ? n->asked_ns + n->params.join_ns : 0;
+		return ask < next ? ask : next;
+	}
+	frame_next = fdp_node_frame_next(n);
+	return frame_next < next ? frame_next : next;
+}
+
+const struct param_state *fdp_node_params_state(const struct fdp_node *n)
+{
+	return n->state;
+}
+
+void fdp_node_leave(struct fdp_node *n, int64_t now_ns)
+{
+	(void)now_ns;
+	if (!n->out.session)
+		return;
+	/* Nobody answers to it: twice, so that one loss does not cost the room its deadlines. */
+	for (int i = 0; i < 2; i++)
+		fdp_outbox_send(&n->out, FDP_TO_ALL, FDP_LEAVE,
+				fdp_leave_encode(n->applied, fdp_outbox_body(&n->out), FDP_BODY_MAX));
+	n->gate.session = n->out.session = 0;
+	n->status = FDP_NODE_ALONE;
+	randombytes_buf(n->nonce, sizeof n->nonce);
+	fdp_node_frame_reset(n);
+}
+
+enum fdp_node_state fdp_node_status(const struct fdp_node *n)
+{
+	return n->status;
+}
+
+uint64_t fdp_node_hash(const struct fdp_node *n)
+{
+	return n->hash;
+}
+
+void fdp_node_counters(const struct fdp_node *n, struct fdp_counters *out)
+{
+	*out = n->counters;
+}

@@ -1,0 +1,294 @@
+#include "protocol/node_private.h"
+
+#include "base/result.h"
+
+#include <string.h>
+
+void fdp_node_frame_reset(struct fdp_node *n)
+{
+	n->applied = n->hash = 0;
+	n->swap_seen = 0;
+	n->twice = false;
+	n->joined_sequence = 0;
+	n->current = (struct fdp_node_frame){ 0 };
+	n->swapped_frame = n->swapped_count = 0;
+	n->swap_ns = 0;
+	n->nacked_ns = 0;
+	fdp_reassembly_reset(&n->delta);
+	fdp_reassembly_reset(&n->snapshot);
+}
+
+static void send_report(struct fdp_node *n, enum fdp_kind kind, uint64_t frame, uint64_t hash)
+{
+	const struct fdp_report report = {
+		.frame = frame,
+		.hash = hash,
+		.swapped_frame = n->swapped_frame,
+		.swapped_count = n->swapped_count,
+		.swap_ns = n->swap_ns,
+		.render_us = n->current.render_us,
+	};
+
+	fdp_outbox_send(&n->out, FDP_TO_ALL, kind,
+			fdp_report_encode(&report, fdp_outbox_body(&n->out), FDP_BODY_MAX));
+}
+
+static void send_ready(struct fdp_node *n, int64_t now_ns)
+{
+	n->current.asked_ns = now_ns;
+	send_report(n, FDP_READY, n->current.frame, n->current.hash);
+}
+
+static void send_nack(struct fdp_node *n, const struct fdp_nack *nack, int64_t now_ns)
+{
+	n->nacked_ns = now_ns;
+	fdp_outbox_send(&n->out, FDP_TO_ALL, FDP_NACK,
+			fdp_nack_encode(nack, fdp_outbox_body(&n->out), FDP_BODY_MAX));
+}
+
+static void ask_for_snapshot(struct fdp_node *n, uint64_t frame, int64_t now_ns)
+{
+	const struct fdp_nack nack = { .frame = frame, .flags = FDP_NACK_SNAPSHOT };
+
+	send_nack(n, &nack, now_ns);
+}
+
+/* Says SWAP once for a frame that is drawn and that the room has swapped. */
+static void swap_if_due(struct fdp_node *n)
+{
+	if (!n->current.ready || n->current.swapped || n->swap_seen < n->current.frame)
+		return;
+	n->current.swapped = true;
+	fdp_node_say(n, FDP_NODE_SWAP, n->current.frame);
+}
+
+static void start_frame(struct fdp_node *n, uint64_t frame)
+{
+	/* A new frame means that the one before was swapped, even if we missed the word. */
+	if (n->current.frame && frame > n->current.frame) {
+		if (n->swap_seen < n->current.frame)
+			n->swap_seen = n->current.frame;
+		swap_if_due(n);
+	}
+	n->current = (struct fdp_node_frame){
+		.frame = frame, .hash = n->hash, .render_us = n->current.render_us
+	};
+	fdp_node_say(n, FDP_NODE_FRAME, frame);
+}
+
+static void say_mismatch(struct fdp_node *n, uint64_t frame, uint64_t ours, uint64_t theirs)
+{
+	const struct fdp_node_event event = {
+		.kind = FDP_NODE_MISMATCH, .frame = frame, .ours = ours, .theirs = theirs
+	};
+
+	n->ops.event(n->ops.ctx, &event);
+}
+
+/* Takes the next state beside the present one, and makes it the present one if it is right. */
+static enum fdp_verdict apply(struct fdp_node *n, const struct fdp_state_head *head,
+			      const uint8_t *delta, size_t len, uint64_t base, int64_t now_ns)
+{
+	const bool chained = base && head->previous_frame == n->applied;
+	struct param_state *next = n->scratch;
+	uint64_t hash;
+
+	param_state_copy(next, n->state);
+	if (param_delta_apply(next, delta, len) || param_newest(next) > head->frame) {
+		ask_for_snapshot(n, head->frame, now_ns);
+		return FDP_BAD_FORMAT;
+	}
+	/* Whoever skipped a frame takes the chain's last link from the master. */
+	hash = param_state_hash(next, chained ? n->hash : head->previous_hash);
+	if (hash != head->hash) {
+		say_mismatch(n, head->frame, hash, head->hash);
+		/* The master compares too, and answers with a snapshot. */
+		send_report(n, FDP_ACK, head->frame, hash);
+		return FDP_GOOD;
+	}
+	n->scratch = n->state;
+	n->state = next;
+	n->applied = head->frame;
+	n->hash = hash;
+	send_report(n, FDP_ACK, n->applied, n->hash);
+	if (fdp_node_in(n, head->live))
+		start_frame(n, head->frame);
+	return FDP_GOOD;
+}
+
+static bool left_out(struct fdp_node *n, uint64_t present, uint64_t sequence)
+{
+	if (n->status != FDP_NODE_LIVE || sequence <= n->joined_sequence || fdp_node_in(n, present))
+		return false;
+	fdp_node_ask_again(n, FDP_NODE_LOST, "the master has left this node out");
+	return true;
+}
+
+static enum fdp_verdict take_state(struct fdp_node *n, const struct fdp_header *h,
+				   const uint8_t *bytes, size_t len, int64_t now_ns)
+{
+	struct fdp_state_head head;
+	const uint8_t *delta = bytes + FDP_STATE_HEAD_BYTES;
+	uint64_t base;
+	const bool snapshot = h->kind == FDP_SNAPSHOT;
+
+	if (fdp_state_head_decode(bytes, len, &head))
+		return FDP_BAD_FORMAT;
+	len -= FDP_STATE_HEAD_BYTES;
+	if (param_delta_base(delta, len, &base) || (snapshot && base) || base > head.frame)
+		return FDP_BAD_FORMAT;
+	if (left_out(n, head.present, h->sequence))
+		return FDP_GOOD;
+	n->twice = head.flags & FDP_TWICE;
+	if (n->status == FDP_NODE_WAITING_SNAPSHOT) {
+		if (!snapshot)
+			return FDP_GOOD; /* nothing to put it on yet */
+		n->status = FDP_NODE_LIVE;
+		n->joined_sequence = h->sequence;
+	} else if (head.frame < n->applied ||
+		   (head.frame == n->applied && (!snapshot || head.hash == n->hash))) {
+		/* Old news; a snapshot sent again means that our ACK was lost. */
+		if (snapshot && head.frame == n->applied)
+			send_report(n, FDP_ACK, n->applied, n->hash);
+		return FDP_GOOD;
+	}
+	if (base > n->applied) {
+		if (fdp_node_in(n, head.live))
+			ask_for_snapshot(n, head.frame, now_ns);
+		return FDP_GOOD;
+	}
+	return apply(n, &head, delta, len, base, now_ns);
+}
+
+static void nack_gap(struct fdp_node *n, struct fdp_reassembly *r, unsigned index, int64_t now_ns)
+{
+	struct fdp_nack nack = { .message = r->message, .count = r->count };
+
+	if (fdp_reassembly_gap(r, index, nack.missing))
+		send_nack(n, &nack, now_ns);
+}
+
+static void nack_missing(struct fdp_node *n, const struct fdp_reassembly *r, int64_t now_ns)
+{
+	struct fdp_nack nack = { .message = r->message, .count = r->count };
+
+	if (fdp_reassembly_missing(r, r->count, nack.missing))
+		send_nack(n, &nack, now_ns);
+}
+
+enum fdp_verdict fdp_node_on_state(struct fdp_node *n, const struct fdp_header *h,
+				   const uint8_t *payload, int64_t now_ns)
+{
+	struct fdp_reassembly *r = h->kind == FDP_SNAPSHOT ? &n->snapshot : &n->delta;
+
+	/* A delta is of no use before the snapshot, and asking for its rest even less. */
+	if (n->status == FDP_NODE_WAITING_SNAPSHOT && h->kind == FDP_DELTA)
+		return FDP_GOOD;
+	switch (fdp_reassembly_add(r, h, payload)) {
+	case FDP_FRAGMENT_BAD:
+		return FDP_BAD_FORMAT;
+	case FDP_FRAGMENT_AGAIN:
+		return FDP_GOOD;
+	case FDP_FRAGMENT_PART:
+		if (r->have == 1)
+			n->nacked_ns = now_ns; /* the rest may be on its way */
+		nack_gap(n, r, h->index, now_ns);
+		return FDP_GOOD;
+	case FDP_FRAGMENT_WHOLE:
+		break;
+	}
+	if (!r->packed)
+		return take_state(n, h, r->bytes, r->message_len, now_ns);
+	if (fdp_unpack(r->bytes, r->message_len, n->plain, r->plain_len))
+		return FDP_BAD_FORMAT;
+	return take_state(n, h, n->plain, r->plain_len, now_ns);
+}
+
+/* A frame is announced that we do not hold: ask for what is missing of it. */
+static void ask_for_announced(struct fdp_node *n, const struct fdp_announce *a, int64_t now_ns)
+{
+	struct fdp_nack nack = { .frame = a->frame, .message = a->message, .count = a->count };
+
+	if (!a->message || (n->nacked_ns && now_ns - n->nacked_ns < n->retry_ns / 2))
+		return;
+	if (a->message == n->delta.message) {
+		if (fdp_reassembly_open(&n->delta))
+			nack_missing(n, &n->delta, now_ns);
+		else
+			ask_for_snapshot(n, a->frame, now_ns); /* came whole, was of no use */
+		return;
+	}
+	if (a->message < n->delta.message)
+		return;
+	for (unsigned i = 0; i < a->count; i++)
+		nack.missing[i / 8] = (uint8_t)(nack.missing[i / 8] | 1u << i % 8);
+	send_nack(n, &nack, now_ns);
+}
+
+enum fdp_verdict fdp_node_on_announce(struct fdp_node *n, const struct fdp_header *h,
+				      const uint8_t *body, int64_t now_ns)
+{
+	struct fdp_announce a;
+
+	if (fdp_announce_decode(body, h->payload_len, &a))
+		return FDP_BAD_FORMAT;
+	if (n->status != FDP_NODE_LIVE || left_out(n, a.present, h->sequence))
+		return FDP_GOOD;
+	n->twice = a.flags & FDP_TWICE;
+	if (a.swapped > n->swap_seen)
+		n->swap_seen = a.swapped;
+	swap_if_due(n);
+	if (a.frame > n->applied && fdp_node_in(n, a.live))
+		ask_for_announced(n, &a, now_ns);
+	if (h->kind != FDP_PROBE)
+		return FDP_GOOD;
+	if (n->current.ready && !n->current.swapped && n->current.frame == n->applied)
+		send_ready(n, now_ns);
+	else
+		send_report(n, FDP_ACK, n->applied, n->hash);
+	return FDP_GOOD;
+}
+
+void fdp_node_frame_tick(struct fdp_node *n, int64_t now_ns)
+{
+	/* READY or SWAP may be lost: either way, saying READY again brings the SWAP. */
+	if (n->current.ready && !n->current.swapped &&
+	    now_ns - n->current.asked_ns >= n->retry_ns)
+		send_ready(n, now_ns);
+	if (fdp_reassembly_open(&n->delta) && now_ns - n->nacked_ns >= n->retry_ns)
+		nack_missing(n, &n->delta, now_ns);
+}
+
+int64_t fdp_node_frame_next(const struct fdp_node *n)
+{
+	int64_t next = INT64_MAX;
+
+	if (n->current.ready && !n->current.swapped)
+		next = n->current.asked_ns + n->retry_ns;
+	if (fdp_reassembly_open(&n->delta) && n->nacked_ns + n->retry_ns < next)
+		next = n->nacked_ns + n->retry_ns;
+	return next;
+}
+
+void fdp_node_ready(struct fdp_node *n, uint64_t frame, uint32_t render_us, int64_t now_ns)
+{
+	if (n->status != FDP_NODE_LIVE || !frame || frame != n->current.frame || n->current.ready)
+		return; /* overtaken by a newer frame, or a session gone by */
+	n->current.ready = true;
+	n->current.render_us = render_us;
+	send_ready(n, now_ns);
+	if (n->twice)
+		send_ready(n, now_ns);
+	swap_if_due(n);
+}
+
+void fdp_node_swapped(struct fdp_node *n, uint64_t frame, int64_t swap_ns, int64_t now_ns)
+{
+	(void)now_ns;
+	if (n->status != FDP_NODE_LIVE || frame <= n->swapped_frame)
+		return;
+	n->swapped_frame = frame;
+	n->swapped_count++;
+	n->swap_ns = swap_ns;
+	send_report(n, FDP_SWAPPED, frame, 0);
+}

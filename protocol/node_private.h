@@ -1,0 +1,79 @@
+/*
+ * Inside the node's half of FDP: node.c has membership, node_frame.c the
+ * frame.
+ */
+#ifndef GROTTO_PROTOCOL_NODE_PRIVATE_H
+#define GROTTO_PROTOCOL_NODE_PRIVATE_H
+
+#include "protocol/message.h"
+#include "protocol/node.h"
+#include "protocol/outbox.h"
+#include "protocol/replay.h"
+#include "protocol/state.h"
+
+#define FDP_JOIN_DEFAULT_NS INT64_C(200000000)
+#define FDP_SILENCE_DEFAULT_NS INT64_C(2000000000)
+
+/* The frame that the daemon is told of. */
+struct fdp_node_frame {
+	uint64_t frame; /* of the last FDP_NODE_FRAME; 0: none yet */
+	uint64_t hash;
+	bool ready;        /* fdp_node_ready was called for it */
+	bool swapped;      /* FDP_NODE_SWAP was said for it */
+	uint32_t render_us;
+	int64_t asked_ns;  /* READY last sent */
+};
+
+struct fdp_node {
+	struct fdp_node_params params;
+	char name[FDP_NAME_BYTES];
+	struct fdp_node_ops ops;
+	struct fdp_counters counters;
+	struct fdp_gate gate;
+	struct fdp_outbox out;
+
+	enum fdp_node_state status;
+	uint8_t nonce[FDP_NONCE_BYTES];     /* of the next WELCOME that we take */
+	/* Of the session we are in: what its second JOIN says again. */
+	uint8_t joined_nonce[FDP_NONCE_BYTES], challenge[FDP_NONCE_BYTES];
+	struct fdp_replay window;
+	int64_t asked_ns; /* JOIN last sent */
+	bool asked;
+	int64_t heard_ns; /* master, in this session */
+	int64_t retry_ns; /* the master's probe interval */
+	char refused[FDP_REASON_MAX];
+	int64_t refused_ns;
+	uint64_t joined_sequence; /* the master's, of our first snapshot */
+
+	struct param_state *state, *scratch;
+	uint64_t applied, hash;
+	uint64_t swap_seen; /* highest frame whose swap was announced */
+	bool twice;
+	struct fdp_node_frame current;
+	uint64_t swapped_frame, swapped_count;
+	int64_t swap_ns;
+
+	/* One each for DELTA and SNAPSHOT. */
+	struct fdp_reassembly delta, snapshot;
+	int64_t nacked_ns;
+	uint8_t plain[FDP_MESSAGE_MAX];
+};
+
+void fdp_node_say(struct fdp_node *n, enum fdp_node_event_kind kind, uint64_t frame);
+/* Back to asking; `kind` and reason say why. */
+void fdp_node_ask_again(struct fdp_node *n, enum fdp_node_event_kind kind, const char *reason);
+/* Our bit in a set of nodes. */
+static inline bool fdp_node_in(const struct fdp_node *n, uint64_t set)
+{
+	return set >> n->params.index & 1;
+}
+
+void fdp_node_frame_reset(struct fdp_node *n);
+enum fdp_verdict fdp_node_on_state(struct fdp_node *n, const struct fdp_header *h,
+				   const uint8_t *payload, int64_t now_ns);
+enum fdp_verdict fdp_node_on_announce(struct fdp_node *n, const struct fdp_header *h,
+				      const uint8_t *body, int64_t now_ns);
+void fdp_node_frame_tick(struct fdp_node *n, int64_t now_ns);
+int64_t fdp_node_frame_next(const struct fdp_node *n);
+
+#endif

@@ -1,0 +1,111 @@
+#include "protocol/outbox.h"
+
+#include "base/result.h"
+
+#include <sodium.h>
+#include <stdlib.h>
+#include <string.h>
+
+int fdp_outbox_init(struct fdp_outbox *out)
+{
+	int result;
+
+	if (sodium_init() < 0)
+		return GR_ERR_UNSUPPORTED;
+	result = fdp_packer_create(&out->packer);
+	if (result)
+		return result;
+	out->datagram = malloc(out->datagram_max);
+	return out->datagram ? GR_OK : GR_ERR_NOMEM;
+}
+
+void fdp_outbox_finish(struct fdp_outbox *out)
+{
+	free(out->datagram);
+	out->datagram = NULL;
+	fdp_packer_destroy(&out->packer);
+}
+
+static void send_sealed(struct fdp_outbox *out, int to, struct fdp_header *header)
+{
+	const size_t len = (size_t)FDP_HEADER_BYTES + header->payload_len;
+	const uint64_t copies = to == FDP_TO_ALL ? out->fan_out : 1;
+
+	header->version = FDP_VERSION;
+	header->sender = out->sender;
+	header->session = out->session;
+	header->sequence = ++out->sequence;
+	fdp_wire_seal(header, out->key, out->datagram);
+	out->counters->datagrams_out += copies;
+	out->counters->bytes_out += copies * len;
+	out->send(out->ctx, to, out->datagram, len);
+}
+
+uint8_t *fdp_outbox_body(struct fdp_outbox *out)
+{
+	return out->datagram + FDP_HEADER_BYTES;
+}
+
+void fdp_outbox_send(struct fdp_outbox *out, int to, enum fdp_kind kind, size_t body_len)
+{
+	struct fdp_header header = {
+		.kind = kind,
+		.payload_len = (uint16_t)body_len,
+		.count = 1,
+		.message = ++out->message,
+		.message_len = (uint32_t)body_len,
+		.plain_len = (uint32_t)body_len,
+	};
+
+	send_sealed(out, to, &header);
+}
+
+void fdp_outbox_letter(struct fdp_outbox *out, struct fdp_letter *letter, enum fdp_kind kind,
+		       uint64_t frame, size_t plain_len)
+{
+	const unsigned plain_count = fdp_fragment_count(plain_len, out->datagram_max);
+	const uint8_t *packed;
+	size_t packed_len;
+
+	letter->kind = kind;
+	letter->frame = frame;
+	letter->number = ++out->message;
+	letter->plain_len = letter->len = (uint32_t)plain_len;
+	letter->count = (uint16_t)plain_count;
+	letter->packed = false;
+	if (plain_count == 1 || fdp_pack(out->packer, letter->bytes, plain_len, &packed, &packed_len))
+		return;
+	if (fdp_fragment_count(packed_len, out->datagram_max) >= plain_count)
+		return;
+	memcpy(letter->bytes, packed, packed_len);
+	letter->packed = true;
+	letter->len = (uint32_t)packed_len;
+	letter->count = (uint16_t)fdp_fragment_count(packed_len, out->datagram_max);
+	out->counters->packed++;
+}
+
+void fdp_outbox_fragment(struct fdp_outbox *out, int to, const struct fdp_letter *letter,
+			 unsigned index)
+{
+	size_t len;
+	const size_t at = fdp_fragment_at(letter->len, out->datagram_max, index, &len);
+	struct fdp_header header = {
+		.kind = letter->kind,
+		.packed = letter->packed,
+		.payload_len = (uint16_t)len,
+		.index = (uint16_t)index,
+		.count = letter->count,
+		.message = letter->number,
+		.message_len = letter->len,
+		.plain_len = letter->plain_len,
+	};
+
+	memcpy(fdp_outbox_body(out), letter->bytes + at, len);
+	send_sealed(out, to, &header);
+}
+
+void fdp_outbox_post(struct fdp_outbox *out, int to, const struct fdp_letter *letter)
+{
+	for (unsigned i = 0; i < letter->count; i++)
+		fdp_outbox_fragment(out, to, letter, i);
+}

@@ -1,0 +1,97 @@
+/*
+ * The fixed header of every FDP datagram, its keyed MAC, and the one gate
+ * that all arriving bytes pass. docs/protocol.md gives every byte.
+ *
+ * A datagram is a header of FDP_HEADER_BYTES and a payload: a fragment of a
+ * message, or a whole one. The MAC (BLAKE2b, keyed, 16 bytes: libsodium's
+ * crypto_generichash, RFC 7693) covers all bytes but itself.
+ *
+ * Header and body of JOIN and REFUSE keep their form in every version of the
+ * protocol, so that a peer of another version can be told why it is refused.
+ */
+#ifndef GROTTO_PROTOCOL_WIRE_H
+#define GROTTO_PROTOCOL_WIRE_H
+
+#include "protocol/master.h"
+
+#define FDP_VERSION 1
+#define FDP_HEADER_BYTES 64
+#define FDP_MAC_AT 48
+#define FDP_MAC_BYTES 16
+#define FDP_SENDER_MASTER 0xffff
+#define FDP_DATAGRAM_MIN 384   /* least datagram_max: a JOIN in one piece */
+#define FDP_DATAGRAM_MAX 65507 /* what UDP over IPv4 can hold */
+#define FDP_MESSAGE_MAX 65536
+#define FDP_FRAGMENTS_MAX 512
+
+enum fdp_kind {
+	FDP_JOIN = 1, /* node: may I? and again with the challenge: I am here */
+	FDP_WELCOME,  /* master: prove that you are here now */
+	FDP_REFUSE,
+	FDP_SNAPSHOT, /* master: the whole state, base 0 */
+	FDP_DELTA,
+	FDP_ACK,      /* node: applied */
+	FDP_NACK,     /* node: these fragments are missing */
+	FDP_PROBE,    /* master: where are you? this is the frame */
+	FDP_READY,    /* node: the GPU has finished */
+	FDP_SWAP,
+	FDP_SWAPPED,
+	FDP_LEAVE,
+	FDP_KINDS
+};
+
+struct fdp_header {
+	uint8_t version;
+	enum fdp_kind kind;
+	bool packed;
+	uint16_t sender; /* node index, or FDP_SENDER_MASTER */
+	uint16_t payload_len;
+	uint16_t index, count; /* fragment */
+	uint64_t session;      /* 0 only in the first JOIN */
+	uint64_t sequence;     /* per sender and session, never twice */
+	uint64_t message;      /* numbers the sender's messages, rising */
+	uint32_t message_len;  /* as sent */
+	uint32_t plain_len;    /* after unpacking; equal to message_len when not packed */
+};
+
+/* What the gate says; each but FDP_GOOD has its counter. */
+enum fdp_verdict {
+	FDP_GOOD,
+	FDP_BAD_SHORT,
+	FDP_BAD_VERSION,
+	FDP_BAD_AUTH,
+	FDP_BAD_SESSION,
+	FDP_BAD_FORMAT,
+	FDP_BAD_REPLAY,
+};
+void fdp_count_bad(struct fdp_counters *counters, enum fdp_verdict verdict);
+/* As a negative result: GR_ERR_FORMAT, GR_ERR_VERSION, GR_ERR_AUTH or GR_ERR_MISMATCH. */
+int fdp_verdict_result(enum fdp_verdict verdict);
+
+/* Who may come in. Bits are 1 << kind. */
+struct fdp_gate {
+	const uint8_t *key;
+	uint64_t session;
+	uint32_t kinds;            /* that this side takes at all */
+	uint32_t any_session_kinds;
+	uint32_t any_version_kinds;
+	uint16_t first_sender, last_sender;
+};
+
+/*
+ * Checks in this order: length, magic, version, MAC (constant time), session,
+ * then the rest. Fields of *out are set as far as the verdict got: on
+ * FDP_BAD_SESSION and later they are authentic. The payload follows the
+ * header in the caller's bytes. Replay is the caller's to check (replay.h),
+ * since it is kept per sender.
+ */
+enum fdp_verdict fdp_gate_open(const struct fdp_gate *gate, const uint8_t *bytes, size_t len,
+			       struct fdp_header *out);
+/* Writes header and MAC before a payload that stands at bytes + FDP_HEADER_BYTES. */
+void fdp_wire_seal(const struct fdp_header *header, const uint8_t key[FDP_KEY_BYTES],
+		   uint8_t *bytes);
+/* Constant-time comparison of the MAC in a datagram of at least FDP_HEADER_BYTES. */
+bool fdp_wire_authentic(const uint8_t key[FDP_KEY_BYTES], const uint8_t *bytes, size_t len);
+const char *fdp_kind_name(enum fdp_kind kind);
+
+#endif

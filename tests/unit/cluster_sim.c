@@ -1,0 +1,455 @@
+#include "cluster_sim.h"
+
+#include "base/result.h"
+
+static double uniform(struct sim *s)
+{
+	return unit_random_range(&s->random, 0, 1);
+}
+
+static bool before(const struct sim_packet *a, const struct sim_packet *b)
+{
+	return a->at_ns != b->at_ns ? a->at_ns < b->at_ns : a->order < b->order;
+}
+
+static void heap_push(struct sim *s, struct sim_packet packet)
+{
+	size_t i = s->packet_count++;
+
+	if (s->packet_count > s->packet_room) {
+		s->packet_room = s->packet_room ? s->packet_room * 2 : 256;
+		s->packets = realloc(s->packets, s->packet_room * sizeof *s->packets);
+		assert_non_null(s->packets);
+	}
+	for (; i && before(&packet, &s->packets[(i - 1) / 2]); i = (i - 1) / 2)
+		s->packets[i] = s->packets[(i - 1) / 2];
+	s->packets[i] = packet;
+}
+
+static struct sim_packet heap_pop(struct sim *s)
+{
+	const struct sim_packet top = s->packets[0], last = s->packets[--s->packet_count];
+	size_t i = 0;
+
+	for (;;) {
+		size_t child = 2 * i + 1;
+
+		if (child >= s->packet_count)
+			break;
+		if (child + 1 < s->packet_count && before(&s->packets[child + 1], &s->packets[child]))
+			child++;
+		if (!before(&s->packets[child], &last))
+			break;
+		s->packets[i] = s->packets[child];
+		i = child;
+	}
+	s->packets[i] = last;
+	return top;
+}
+
+void sim_inject(struct sim *s, int to, const uint8_t *bytes, size_t len, int64_t delay_ns)
+{
+	heap_push(s, (struct sim_packet){ s->now_ns + delay_ns, s->order++, to, len,
+					  unit_copy(bytes, len) });
+}
+
+/* One receiver's copy of a datagram: lost, late, twice, as the dice fall. */
+static void carry(struct sim *s, int to, int about, const uint8_t *bytes, size_t len)
+{
+	const int copies = 1 + (s->duplicate > 0 && uniform(s) < s->duplicate);
+
+	if (s->nodes[about].cut)
+		return;
+	for (int i = 0; i < copies; i++) {
+		uint8_t *copy;
+
+		if (s->loss > 0 && uniform(s) < s->loss)
+			continue;
+		copy = unit_copy(bytes, len);
+		if (s->tamper && !s->tamper(s, to, copy, len)) {
+			free(copy);
+			continue;
+		}
+		heap_push(s, (struct sim_packet){
+			s->now_ns + s->delay_ns + (int64_t)((double)s->jitter_ns * uniform(s)),
+			s->order++, to, len, copy });
+	}
+}
+
+static void master_send(void *ctx, int to, const uint8_t *bytes, size_t len)
+{
+	struct sim *s = ctx;
+
+	assert_true(len <= s->datagram_max);
+	for (int i = 0; i < (int)s->node_count; i++)
+		if (to == FDP_TO_ALL || to == i)
+			carry(s, i, i, bytes, len);
+}
+
+static void master_event(void *ctx, const struct fdp_master_event *e)
+{
+	struct sim *s = ctx;
+
+	switch (e->kind) {
+	case FDP_MASTER_JOINED:
+		s->joined++;
+		s->join_pending = true;
+		break;
+	case FDP_MASTER_LEFT: s->left++; break;
+	case FDP_MASTER_REFUSED:
+		s->refused++;
+		snprintf(s->reason, sizeof s->reason, "%s", e->reason);
+		break;
+	case FDP_MASTER_LATE: s->late++; break;
+	case FDP_MASTER_EVICTED: s->evicted++; break;
+	case FDP_MASTER_MISMATCH: s->mismatches++; break;
+	case FDP_MASTER_SWAP:
+		assert_int_equal(e->frame, s->frame);
+		s->swapped++;
+		s->begin_at_ns = s->begun_ns + SIM_PERIOD_NS > s->now_ns ? s->begun_ns + SIM_PERIOD_NS
+									  : s->now_ns;
+		break;
+	}
+}
+
+static void node_send(void *ctx, const uint8_t *bytes, size_t len)
+{
+	struct sim_node *n = ctx;
+
+	assert_true(len <= n->sim->datagram_max);
+	carry(n->sim, -1, n->index, bytes, len);
+}
+
+static void note_delivery(struct sim *s)
+{
+	if (s->delivery_count == s->delivery_room) {
+		s->delivery_room = s->delivery_room ? s->delivery_room * 2 : 1024;
+		s->delivery_ns = realloc(s->delivery_ns, s->delivery_room * sizeof *s->delivery_ns);
+		assert_non_null(s->delivery_ns);
+	}
+	s->delivery_ns[s->delivery_count++] = s->now_ns - s->begun_ns;
+}
+
+/* A node may only be told of a frame whose state it holds to the bit. */
+static void check_frame(struct sim_node *n, uint64_t frame)
+{
+	struct sim *s = n->sim;
+
+	assert_int_equal(param_state_hash(fdp_node_params_state(n->node), 0),
+			 s->state_hash[frame % SIM_STATES]);
+	if (frame == s->frame) {
+		assert_int_equal(fdp_node_hash(n->node), fdp_master_hash(s->master));
+		note_delivery(s);
+	}
+}
+
+static void node_event(void *ctx, const struct fdp_node_event *e)
+{
+	struct sim_node *n = ctx;
+	struct sim *s = n->sim;
+
+	switch (e->kind) {
+	case FDP_NODE_JOINED:
+		n->joined++;
+		n->last_frame = n->last_swap = n->drawing = n->swap = 0;
+		break;
+	case FDP_NODE_FRAME:
+		assert_true(e->frame >= n->last_frame); /* equal: the state was put right */
+		check_frame(n, e->frame);
+		n->frames += e->frame > n->last_frame;
+		n->last_frame = n->drawing = e->frame;
+		n->drawn_at_ns = s->now_ns + (n->render_ns ? n->render_ns
+				 : 2 * SIM_MS + (int64_t)(6 * SIM_MS * uniform(s)));
+		break;
+	case FDP_NODE_SWAP:
+		assert_true(e->frame > n->last_swap);
+		assert_int_equal(e->frame, n->last_frame);
+		assert_int_equal(n->drawing, 0); /* drawn, or it may not be shown */
+		n->last_swap = n->swap = e->frame;
+		n->swaps++;
+		break;
+	case FDP_NODE_REFUSED:
+		n->refused++;
+		snprintf(n->reason, sizeof n->reason, "%s", e->reason);
+		break;
+	case FDP_NODE_LOST: n->lost++; break;
+	case FDP_NODE_MASTER_LEFT: n->left++; break;
+	case FDP_NODE_MISMATCH:
+		assert_int_not_equal(e->ours, e->theirs);
+		n->mismatches++;
+		break;
+	}
+}
+
+void sim_init(struct sim *s, size_t nodes, uint64_t seed)
+{
+	memset(s, 0, sizeof *s);
+	s->random.state = seed * 2 + 1;
+	unit_random_u32(&s->random);
+	s->now_ns = INT64_C(1000000000000);
+	s->delay_ns = 50000;
+	s->jitter_ns = 20000;
+	s->datagram_max = 1472;
+	s->multicast = true;
+	s->evict_frames = 3;
+	s->node_count = nodes;
+	s->session = seed * 1000 + 1;
+	for (size_t i = 0; i < nodes; i++)
+		snprintf(s->names[i], sizeof s->names[i], "wall%zu", i);
+}
+
+void sim_start_master(struct sim *s)
+{
+	const struct fdp_master_ops ops = { master_send, master_event, s };
+	const char *names[FDP_MAX_NODES];
+	struct fdp_master_params p = {
+		.session = ++s->session,
+		.key = { 1, 2, 3 },
+		.layout_hash = { 4 },
+		.scene_hash = { 5 },
+		.node_names = names,
+		.node_count = s->node_count,
+		.datagram_max = s->datagram_max,
+		.deadline_ns = SIM_DEADLINE_NS,
+		.evict_frames = s->evict_frames,
+		.multicast = s->multicast,
+	};
+
+	for (size_t i = 0; i < s->node_count; i++)
+		names[i] = s->names[i];
+	assert_int_equal(fdp_master_create(&s->master, &p, &ops), GR_OK);
+	param_state_destroy(&s->state);
+	assert_int_equal(param_state_create(&s->state), GR_OK);
+	s->frame = 0;
+	s->begin_at_ns = s->now_ns;
+}
+
+void sim_kill_master(struct sim *s)
+{
+	fdp_master_destroy(&s->master);
+}
+
+void sim_start_node(struct sim *s, int node)
+{
+	struct sim_node *n = &s->nodes[node];
+	const struct fdp_node_ops ops = { node_send, node_event, n };
+	const struct fdp_node_params p = {
+		.index = (uint16_t)node,
+		.name = s->names[node],
+		.key = { 1, 2, 3 },
+		.layout_hash = { 4 },
+		.scene_hash = { 5 },
+		.datagram_max = s->datagram_max,
+	};
+
+	n->sim = s;
+	n->index = node;
+	n->drawing = n->swap = 0;
+	assert_int_equal(fdp_node_create(&n->node, &p, &ops), GR_OK);
+}
+
+void sim_kill_node(struct sim *s, int node)
+{
+	fdp_node_destroy(&s->nodes[node].node);
+	s->nodes[node].drawing = 0;
+}
+
+void sim_start_all(struct sim *s)
+{
+	sim_start_master(s);
+	for (size_t i = 0; i < s->node_count; i++)
+		sim_start_node(s, (int)i);
+}
+
+static void begin_frame(struct sim *s)
+{
+	const uint64_t frame = s->frame + 1, time = frame * 16666667;
+	const float head[3] = { (float)uniform(s), 1.6f, (float)uniform(s) };
+	float lamps[48];
+
+	assert_true(param_set(s->state, PARAM_FRAME_TIME, &time, frame) >= 0);
+	assert_true(param_set(s->state, PARAM_HEAD_POSITION, head, frame) >= 0);
+	if (s->join_pending) { /* what the daemon does, so that the light starts equal */
+		assert_true(param_set(s->state, PARAM_GI_EPOCH, &frame, frame) >= 0);
+		s->join_pending = false;
+	}
+	for (int i = 0; s->lamps && i < 48; i++)
+		lamps[i] = (float)uniform(s);
+	if (s->lamps) {
+		assert_true(param_set(s->state, PARAM_LAMP_POSITION, lamps, frame) >= 0);
+		assert_true(param_set(s->state, PARAM_LAMP_INTENSITY, lamps, frame) >= 0);
+	}
+	s->frame = frame;
+	s->begun_ns = s->now_ns;
+	s->begin_at_ns = INT64_MAX;
+	s->state_hash[frame % SIM_STATES] = param_state_hash(s->state, 0);
+	assert_int_equal(fdp_master_begin(s->master, s->state, frame, s->now_ns), GR_OK);
+}
+
+static int64_t earliest(const struct sim *s)
+{
+	int64_t next = s->packet_count ? s->packets[0].at_ns : INT64_MAX, at;
+
+	if (s->master) {
+		at = fdp_master_next(s->master);
+		next = at < next ? at : next;
+		if (s->running && fdp_master_idle(s->master) && s->begin_at_ns < next)
+			next = s->begin_at_ns;
+	}
+	for (size_t i = 0; i < s->node_count; i++) {
+		const struct sim_node *n = &s->nodes[i];
+
+		if (!n->node)
+			continue;
+		at = fdp_node_next(n->node);
+		next = at < next ? at : next;
+		if (n->drawing && n->drawn_at_ns < next)
+			next = n->drawn_at_ns;
+	}
+	return next;
+}
+
+/* The node's daemon, after each call into the state machine. */
+static void tend_node(struct sim *s, struct sim_node *n)
+{
+	while (n->node && n->swap) {
+		const uint64_t frame = n->swap;
+
+		n->swap = 0;
+		fdp_node_swapped(n->node, frame, s->now_ns, s->now_ns);
+	}
+}
+
+static void deliver(struct sim *s, const struct sim_packet *p)
+{
+	if (p->to < 0) {
+		if (s->master)
+			fdp_master_receive(s->master, p->bytes, p->len, s->now_ns);
+	} else if (s->nodes[p->to].node) {
+		fdp_node_receive(s->nodes[p->to].node, p->bytes, p->len, s->now_ns);
+		tend_node(s, &s->nodes[p->to]);
+	}
+	free(p->bytes);
+}
+
+static void step_node(struct sim *s, struct sim_node *n)
+{
+	if (!n->node)
+		return;
+	if (n->drawing && s->now_ns >= n->drawn_at_ns) {
+		const uint64_t frame = n->drawing;
+
+		n->drawing = 0;
+		fdp_node_ready(n->node, frame, 1000, s->now_ns);
+		tend_node(s, n);
+	}
+	if (s->now_ns >= fdp_node_next(n->node)) {
+		fdp_node_tick(n->node, s->now_ns);
+		tend_node(s, n);
+		/* Or an event loop would spin. */
+		assert_true(fdp_node_next(n->node) > s->now_ns);
+	}
+}
+
+static void step(struct sim *s)
+{
+	while (s->packet_count && s->packets[0].at_ns <= s->now_ns) {
+		const struct sim_packet p = heap_pop(s);
+
+		deliver(s, &p);
+	}
+	for (size_t i = 0; i < s->node_count; i++)
+		step_node(s, &s->nodes[i]);
+	if (!s->master)
+		return;
+	if (s->now_ns >= fdp_master_next(s->master)) {
+		fdp_master_tick(s->master, s->now_ns);
+		assert_true(fdp_master_next(s->master) > s->now_ns);
+	}
+	if (s->running && fdp_master_idle(s->master) && s->now_ns >= s->begin_at_ns)
+		begin_frame(s);
+}
+
+static void advance(struct sim *s, int64_t until_ns)
+{
+	const int64_t next = earliest(s);
+
+	if (next > s->now_ns)
+		s->now_ns = next < until_ns ? next : until_ns;
+	step(s);
+}
+
+void sim_run_ns(struct sim *s, int64_t ns)
+{
+	const int64_t until = s->now_ns + ns;
+
+	while (s->now_ns < until)
+		advance(s, until);
+}
+
+void sim_run_frames(struct sim *s, uint64_t frames)
+{
+	const uint64_t until = s->swapped + frames;
+	const int64_t give_up = s->now_ns + (int64_t)(frames + 100) * 4 * SIM_DEADLINE_NS;
+
+	s->running = true;
+	while (s->swapped < until) {
+		advance(s, give_up);
+		assert_true(s->now_ns < give_up); /* the room never stops */
+	}
+	s->running = false;
+	sim_run_ns(s, 2 * SIM_MS); /* let the last SWAP arrive */
+}
+
+void sim_assemble(struct sim *s)
+{
+	const int64_t give_up = s->now_ns + 5000 * SIM_MS;
+
+	for (;;) {
+		size_t in = 0;
+
+		for (size_t i = 0; i < s->node_count; i++)
+			in += s->nodes[i].node && fdp_node_status(s->nodes[i].node) == FDP_NODE_LIVE &&
+			      (s->master && (s->master->peers[i].synced ||
+					     fdp_peer_counts(s->master->peers[i].state)));
+		if (in == s->node_count)
+			return;
+		advance(s, give_up);
+		assert_true(s->now_ns < give_up);
+	}
+}
+
+struct fdp_peer_status sim_peer(const struct sim *s, int node)
+{
+	struct fdp_peer_status status;
+
+	fdp_master_peer(s->master, (size_t)node, &status);
+	return status;
+}
+
+static int compare_ns(const void *a, const void *b)
+{
+	const int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
+
+	return (x > y) - (x < y);
+}
+
+int64_t sim_delivery_quantile(struct sim *s, double q)
+{
+	if (!s->delivery_count)
+		return 0;
+	qsort(s->delivery_ns, s->delivery_count, sizeof *s->delivery_ns, compare_ns);
+	return s->delivery_ns[(size_t)(q * (double)(s->delivery_count - 1))];
+}
+
+void sim_finish(struct sim *s)
+{
+	for (size_t i = 0; i < s->node_count; i++)
+		fdp_node_destroy(&s->nodes[i].node);
+	fdp_master_destroy(&s->master);
+	while (s->packet_count)
+		free(heap_pop(s).bytes);
+	free(s->packets);
+	free(s->delivery_ns);
+	param_state_destroy(&s->state);
+}

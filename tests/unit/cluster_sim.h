@@ -1,0 +1,89 @@
+/*
+ * A whole cluster on a fake clock: the real master and node state machines,
+ * a made-up network between them, and what the daemons would do around them.
+ */
+#ifndef GROTTO_TESTS_CLUSTER_SIM_H
+#define GROTTO_TESTS_CLUSTER_SIM_H
+
+#include "protocol/master_private.h"
+#include "protocol/node_private.h"
+
+#include "unit.h"
+
+#define SIM_MS INT64_C(1000000)
+#define SIM_PERIOD_NS INT64_C(16666667)
+#define SIM_DEADLINE_NS (33 * SIM_MS)
+#define SIM_STATES 256 /* frames whose state is remembered for comparison */
+
+struct sim_packet {
+	int64_t at_ns;
+	uint64_t order; /* equal times keep their order */
+	int to;         /* -1: the master */
+	size_t len;
+	uint8_t *bytes;
+};
+
+struct sim_node {
+	struct sim *sim;
+	int index;
+	struct fdp_node *node; /* NULL: dead */
+	bool cut;              /* no datagram passes */
+	int64_t render_ns;     /* 0: drawn from 2..8 ms */
+	uint64_t drawing;      /* frame, 0 none */
+	int64_t drawn_at_ns;
+	uint64_t swap; /* told, not yet reported */
+	uint64_t frames, swaps, last_frame, last_swap, joined, lost, refused, mismatches, left;
+	char reason[FDP_REASON_MAX];
+};
+
+struct sim {
+	struct unit_random random;
+	int64_t now_ns;
+	double loss, duplicate;
+	int64_t delay_ns, jitter_ns;
+	size_t datagram_max;
+	bool multicast, lamps; /* lamps: the larger parameters change every frame too */
+	unsigned evict_frames;
+
+	struct fdp_master *master; /* NULL: dead */
+	uint64_t session;
+	size_t node_count;
+	struct sim_node nodes[FDP_MAX_NODES];
+	char names[FDP_MAX_NODES][FDP_NAME_BYTES];
+
+	struct sim_packet *packets; /* a binary heap */
+	size_t packet_count, packet_room;
+	uint64_t order;
+
+	struct param_state *state;
+	uint64_t frame;
+	bool running;
+	int64_t begin_at_ns, begun_ns;
+	uint64_t state_hash[SIM_STATES];
+	uint64_t swapped, joined, left, late, evicted, mismatches, refused;
+	bool join_pending;
+	char reason[FDP_REASON_MAX];
+	int64_t *delivery_ns; /* begin to FDP_NODE_FRAME, all nodes and frames */
+	size_t delivery_count, delivery_room;
+	/* May change a datagram on its way; false drops it. */
+	bool (*tamper)(struct sim *sim, int to, uint8_t *bytes, size_t len);
+	void *tamper_ctx;
+};
+
+void sim_init(struct sim *s, size_t nodes, uint64_t seed);
+void sim_start_master(struct sim *s);
+void sim_kill_master(struct sim *s);
+void sim_start_node(struct sim *s, int node);
+void sim_kill_node(struct sim *s, int node);
+void sim_start_all(struct sim *s);
+/* Until every node is live and idle; fails the test when that takes 5 s. */
+void sim_assemble(struct sim *s);
+void sim_run_ns(struct sim *s, int64_t ns);
+/* Frames at 60 Hz until so many more have swapped. */
+void sim_run_frames(struct sim *s, uint64_t frames);
+void sim_inject(struct sim *s, int to, const uint8_t *bytes, size_t len, int64_t delay_ns);
+void sim_finish(struct sim *s);
+struct fdp_peer_status sim_peer(const struct sim *s, int node);
+int64_t sim_delivery_quantile(struct sim *s, double q);
+
+#endif
