@@ -6,3 +6,18 @@ TESTS += tests/packaging/units.sh
 check-long:
 	GROTTO_LONG=1 $(MAKE) $(AM_MAKEFLAGS) check
 .PHONY: check-long
+
+# Static analysis, see scripts/lint.
+LINT_FLAGS = -std=gnu17 $(DEFS) $(DEFAULT_INCLUDES) $(AM_CPPFLAGS) \
+	$(CGLM_CFLAGS) $(LIBCONFIG_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS) \
+	$(SYSTEMD_CFLAGS) $(EPOXY_CFLAGS) $(GLFW_CFLAGS) $(ASSIMP_CFLAGS) \
+	$(OPENEXR_CFLAGS) $(PNG_CFLAGS)
+clang-tidy cppcheck: $(BUILT_SOURCES)
+	$(AM_V_GEN)$(top_srcdir)/scripts/lint $@ $(top_srcdir) $(LINT_FLAGS)
+.PHONY: clang-tidy cppcheck
+
+EXTRA_DIST += \
+	.clang-format .clang-tidy .editorconfig .ci/run \
+	scripts/check scripts/count.sh scripts/cppcheck.supp scripts/demo \
+	scripts/lib.sh scripts/lint scripts/lsan.supp \
+	scripts/packages scripts/packages.check

@@ -248,6 +248,7 @@ int track_replay_parse(const char *text, size_t len, const char *name,
 {
 	struct parser p = { .name = name, .diag = diag, .first_error = diag->errors };
 	int result = GR_OK;
+	bool clean;
 
 	for (size_t at = 0; at < len && result == GR_OK;) {
 		const char *newline = memchr(text + at, '\n', len - at);
@@ -257,15 +258,14 @@ int track_replay_parse(const char *text, size_t len, const char *name,
 		result = parse_line(&p, text + at, end - at);
 		at = end + 1;
 	}
-	if (result == GR_OK && diag->errors == p.first_error && p.count == 0)
+	clean = result == GR_OK && diag->errors == p.first_error;
+	if (clean && p.count == 0)
 		gr_diag_add(diag, GR_DIAG_ERROR, name, 0, NULL,
 			    "holds no sample, must hold at least one line: time_s body valid px py "
 			    "pz qx qy qz qw buttons");
-	if (result == GR_OK && diag->errors != p.first_error)
-		result = GR_ERR_FORMAT;
-	if (result != GR_OK) {
+	if (!clean || p.count == 0) {
 		free(p.samples);
-		return result;
+		return result == GR_OK ? GR_ERR_FORMAT : result;
 	}
 	qsort(p.samples, p.count, sizeof *p.samples, by_time);
 	*out_samples = p.samples;
