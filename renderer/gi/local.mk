@@ -1,2 +1,17 @@
 # renderer/gi, renderer/trace
-RENDERER_SOURCES += renderer/gi/gi.h renderer/trace/rays.h
+RENDERER_SOURCES += \
+	renderer/gi/dispatch.c renderer/gi/dispatch.h \
+	renderer/gi/gi.h \
+	renderer/gi/lattice.c renderer/gi/lattice.h \
+	renderer/gi/link.c renderer/gi/link.h \
+	renderer/gi/lpv.c renderer/gi/lpv_check.c renderer/gi/lpv_private.h renderer/gi/lpv_splat.c \
+	renderer/gi/lpv_cpu.c renderer/gi/lpv_cpu.h \
+	renderer/gi/sectors.c renderer/gi/sectors.h \
+	renderer/gi/surface.c renderer/gi/surface.h \
+	renderer/trace/rays.c renderer/trace/rays.h
+
+SHADERS += \
+	renderer/shaders/gi_lpv.glsl renderer/shaders/gi_probe.comp renderer/shaders/lpv_check.comp \
+	renderer/shaders/lpv_lattice.glsl renderer/shaders/lpv_splat.glsl \
+	renderer/shaders/lpv_splat_peak.comp renderer/shaders/lpv_splat_resolve.comp \
+	renderer/shaders/lpv_splat_sum.comp renderer/shaders/lpv_step.comp

@@ -1,0 +1,302 @@
+#include "renderer/gi/lpv_private.h"
+
+#include "base/log.h"
+#include "base/result.h"
+#include "renderer/gl/program.h"
+#include "renderer/trace/rays.h"
+
+#include <epoxy/gl.h>
+#include <math.h>
+#include <sodium.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static struct lpv *lpv_of(struct gi_method *method)
+{
+	return (struct lpv *)method;
+}
+
+static const struct lpv *lpv_of_const(const struct gi_method *method)
+{
+	return (const struct lpv *)method;
+}
+
+static unsigned storage(size_t bytes, const void *data)
+{
+	unsigned buffer;
+
+	glCreateBuffers(1, &buffer);
+	glNamedBufferStorage(buffer, (GLsizeiptr)(bytes ? bytes : 16), bytes ? data : NULL, 0);
+	if (!data)
+		glClearNamedBufferData(buffer, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
+	return buffer;
+}
+
+/* Surface records and blocks as the shaders read them. */
+static int upload_links(struct lpv *lpv, const struct links *links)
+{
+	uint32_t *records = calloc(links->surface_count * 8 + 8, sizeof *records);
+
+	if (!records)
+		return GR_ERR_NOMEM;
+	for (size_t i = 0; i < links->surface_count; i++) {
+		const struct link_surface *s = &links->surfaces[i];
+
+		for (int j = 0; j < SECTOR_COUNT; j++)
+			records[8 * i + (size_t)j / 4] |= (uint32_t)s->through[j] << (8 * (j % 4));
+		records[8 * i + 7] = s->first | s->count << 27;
+	}
+	lpv->surfaces = storage(links->surface_count * 8 * sizeof *records, records);
+	free(records);
+	lpv->surface_of = storage(lattice_cells(&links->lattice) * sizeof(uint32_t),
+				  links->surface_of);
+	/* struct link_block is the shader's record byte for byte */
+	_Static_assert(sizeof(struct link_block) == 32, "two vec4");
+	lpv->blocks = storage(links->block_count * sizeof(struct link_block), links->blocks);
+	return GR_OK;
+}
+
+static void upload_block(struct lpv *lpv)
+{
+	const struct sectors *s = &lpv->sectors;
+	const struct lattice *l = &lpv->lattice;
+	struct sector_medium medium;
+	struct lattice_block block = {
+		.size = { l->size[0], l->size[1], l->size[2], (int32_t)lattice_cells(l) },
+		.origin = { l->origin[0], l->origin[1], l->origin[2], l->d },
+		.point = { lpv->point[0], lpv->point[1], lpv->point[2], 0 },
+	};
+	double scale = (double)lpv->calibration / ((double)l->d * (double)l->d);
+
+	sectors_medium(s, (double)lpv->absorption, (double)lpv->scattering, (double)l->d, &medium);
+	for (int k = 0; k < SECTOR_KINDS; k++) {
+		block.sector_a[k] = (float)medium.a[k];
+		block.sector_b[k] = (float)medium.b[k];
+		block.sector_mu[k] = (float)s->mu[k];
+	}
+	block.sector_a[3] = (float)(3 * medium.a[0] + 6 * medium.a[1] + 4 * medium.a[2]);
+	block.sector_mu[3] = (float)s->lobe;
+	block.look[0] = (float)(scale * s->look_f * 0.25);
+	block.look[1] = (float)(scale * s->look_v * 0.5);
+	glNamedBufferSubData(lpv->block, 0, sizeof block, &block);
+}
+
+static void bind(const struct gi_method *method)
+{
+	const struct lpv *lpv = lpv_of_const(method);
+
+	glBindBufferBase(GL_UNIFORM_BUFFER, LPV_BINDING_BLOCK, lpv->block);
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_LIGHT, lpv->light[lpv->current]);
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_SURFACE_OF, lpv->surface_of);
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_SURFACES, lpv->surfaces);
+}
+
+void lpv_propagate(struct lpv *lpv, int steps)
+{
+	const int *size = lpv->lattice.size;
+
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_INJECT, lpv->inject);
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_BLOCKS, lpv->blocks);
+	glUseProgram(lpv->step);
+	for (int i = 0; i < steps; i++) {
+		glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_LIGHT,
+				 lpv->light[lpv->current]);
+		glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_NEXT,
+				 lpv->light[!lpv->current]);
+		glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+		glDispatchCompute(((unsigned)size[0] + 7) / 8, ((unsigned)size[1] + 3) / 4,
+				  (unsigned)size[2]);
+		lpv->current = !lpv->current;
+	}
+	glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+static void go_dark(struct lpv *lpv)
+{
+	for (int i = 0; i < 2; i++)
+		glClearNamedBufferData(lpv->light[i], GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT,
+				       NULL);
+}
+
+static int update(struct gi_method *method, const struct render_frame *frame,
+		  const struct rsm_set *rsm)
+{
+	struct lpv *lpv = lpv_of(method);
+	bool restart = !lpv->started || frame->gi_epoch != lpv->epoch;
+	bool medium = frame->absorption_per_m != lpv->absorption ||
+		      frame->scattering_per_m != lpv->scattering;
+	bool lamps = restart || rsm->version != lpv->rsm_version;
+	int steps = frame->gi_steps > 0 ? frame->gi_steps : 0;
+
+	lpv_check_collect(lpv);
+	lpv->stats.ran = false;
+	lpv->stats.steps = 0;
+	if (!frame->gi_on)
+		return GR_NOTHING;
+	if (restart || medium || lamps)
+		lpv->steps_since_change = 0;
+	else if (lpv->steps_since_change >= lpv->settle_steps)
+		return GR_NOTHING;
+	if (medium || restart) {
+		lpv->absorption = frame->absorption_per_m;
+		lpv->scattering = frame->scattering_per_m;
+		upload_block(lpv);
+	}
+	bind(method);
+	if (lamps)
+		lpv_splat(lpv, rsm);
+	if (restart) {
+		go_dark(lpv);
+		steps = lpv->settle_steps;
+	}
+	lpv_propagate(lpv, steps);
+	lpv_check_submit(lpv);
+	lpv->started = true;
+	lpv->epoch = frame->gi_epoch;
+	lpv->rsm_version = rsm->version;
+	lpv->steps_since_change += steps;
+	lpv->stats.ran = true;
+	lpv->stats.steps = steps;
+	lpv->stats.steady = lpv->steps_since_change >= lpv->settle_steps;
+	return GR_OK;
+}
+
+static const char *describe(const struct gi_method *method)
+{
+	return lpv_of_const(method)->description;
+}
+
+static void stats(const struct gi_method *method, struct gi_stats *out)
+{
+	*out = lpv_of_const(method)->stats;
+}
+
+static uint64_t hash(const struct gi_method *method)
+{
+	static const unsigned char key[crypto_shorthash_KEYBYTES] = "grotto lattice";
+	const struct lpv *lpv = lpv_of_const(method);
+	size_t bytes = lattice_cells(&lpv->lattice) * LPV_LIGHT_FLOATS * sizeof(float);
+	unsigned char *light = malloc(bytes);
+	unsigned char digest[crypto_shorthash_BYTES];
+	uint64_t value = 0;
+
+	if (!light)
+		return 0;
+	glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+	glGetNamedBufferSubData(lpv->light[lpv->current], 0, (GLsizeiptr)bytes, light);
+	crypto_shorthash(digest, light, bytes, key);
+	for (int i = 0; i < 8; i++)
+		value |= (uint64_t)digest[i] << (8 * i);
+	free(light);
+	return value;
+}
+
+static void destroy(struct gi_method *method)
+{
+	struct lpv *lpv = lpv_of(method);
+
+	lpv_splat_finish(lpv);
+	lpv_check_finish(lpv);
+	program_destroy(&lpv->step);
+	glDeleteBuffers(1, &lpv->block);
+	glDeleteBuffers(2, lpv->light);
+	glDeleteBuffers(1, &lpv->surface_of);
+	glDeleteBuffers(1, &lpv->surfaces);
+	glDeleteBuffers(1, &lpv->inject);
+	glDeleteBuffers(1, &lpv->blocks);
+	free(lpv);
+}
+
+static const struct gi_method_ops repaired_ops = {
+	.name = "lpv",
+	.describe = describe,
+	.update = update,
+	.bind = bind,
+	.shader_name = "gi_lpv.glsl",
+	.stats = stats,
+	.hash = hash,
+	.destroy = destroy,
+};
+
+static int create_gl(struct lpv *lpv, const struct links *links)
+{
+	size_t cells = lattice_cells(&lpv->lattice);
+	int result = dispatch_plan(cells, 64, &lpv->per_cell);
+
+	if (result == GR_OK)
+		result = upload_links(lpv, links);
+	if (result == GR_OK)
+		result = program_create_compute(&lpv->step, "lpv_step.comp", NULL);
+	if (result == GR_OK)
+		result = lpv_splat_init(lpv);
+	if (result == GR_OK)
+		result = lpv_check_init(lpv);
+	if (result != GR_OK)
+		return result;
+	for (int i = 0; i < 2; i++)
+		lpv->light[i] = storage(cells * LPV_LIGHT_FLOATS * sizeof(float), NULL);
+	lpv->inject = storage(cells * 12 * sizeof(float), NULL);
+	glCreateBuffers(1, &lpv->block);
+	glNamedBufferStorage(lpv->block, sizeof(struct lattice_block), NULL,
+			     GL_DYNAMIC_STORAGE_BIT);
+	upload_block(lpv);
+	return glGetError() == GL_NO_ERROR ? GR_OK : GR_ERR_GL;
+}
+
+static void say(struct lpv *lpv, const struct links *links, const struct scene_file *file)
+{
+	const int *size = lpv->lattice.size;
+
+	snprintf(lpv->description, sizeof lpv->description,
+		 "light propagation volumes, %d x %d x %d cells of %.3g m, %d steps a frame: diffuse "
+		 "light between surfaces; %zu cells meet surfaces (%zu rays, once), steady after %d steps",
+		 size[0], size[1], size[2], (double)lpv->lattice.d, file->gi.steps,
+		 links->surface_count, links->rays, lpv->settle_steps);
+}
+
+int gi_lpv_create(struct gi_method **out, const struct scene *scene,
+		  const struct scene_file *file)
+{
+	struct lpv *lpv = calloc(1, sizeof *lpv);
+	struct rays *rays = NULL;
+	struct links *links = NULL;
+	int result = GR_ERR_NOMEM;
+
+	*out = NULL;
+	if (!lpv)
+		return result;
+	lpv->base.ops = &repaired_ops;
+	result = lattice_init(&lpv->lattice, scene->min, scene->max, file->gi.lattice);
+	if (result != GR_OK) {
+		gr_error("light lattice: %d cells over a scene of %g x %g x %g m cannot be", file->gi.lattice,
+			 (double)(scene->max[0] - scene->min[0]), (double)(scene->max[1] - scene->min[1]),
+			 (double)(scene->max[2] - scene->min[2]));
+		goto out;
+	}
+	result = rays_create(&rays, scene);
+	if (result != GR_OK)
+		goto out;
+	result = links_create(&links, scene, rays, &lpv->lattice, file->gi.link_rays,
+			      file->gi.albedo_override);
+	if (result != GR_OK)
+		goto out;
+	sectors_init(&lpv->sectors);
+	lpv->calibration = 1;
+	lpv->settle_steps = links->settle_steps;
+	memcpy(lpv->point, links->point, sizeof lpv->point);
+	lpv->absorption = file->absorption_per_m;
+	lpv->scattering = file->scattering_per_m;
+	result = create_gl(lpv, links);
+	if (result != GR_OK)
+		goto out;
+	say(lpv, links, file);
+	*out = &lpv->base;
+	lpv = NULL;
+out:
+	links_destroy(&links);
+	rays_destroy(&rays);
+	if (lpv)
+		destroy(&lpv->base);
+	return result;
+}

@@ -1,0 +1,84 @@
+/*
+ * Inside of the light propagation volumes: buffers and programs, for lpv*.c
+ * and for tests that look into the light. GL thread only.
+ */
+#ifndef GROTTO_RENDERER_GI_LPV_PRIVATE_H
+#define GROTTO_RENDERER_GI_LPV_PRIVATE_H
+
+#include "renderer/gi/dispatch.h"
+#include "renderer/gi/gi.h"
+#include "renderer/gi/link.h"
+#include "renderer/gi/sectors.h"
+
+/* Storage and uniform buffer bindings; 8 to 10 stay bound for shading. */
+enum lpv_binding {
+	LPV_BINDING_BLOCK = 8, /* uniform */
+	LPV_BINDING_LIGHT = 8,
+	LPV_BINDING_SURFACE_OF = 9,
+	LPV_BINDING_SURFACES = 10,
+	LPV_BINDING_INJECT = 11,
+	LPV_BINDING_BLOCKS = 12,
+	LPV_BINDING_NEXT = 13,
+	LPV_BINDING_SPLAT = 14,
+	LPV_BINDING_CHECK = 15,
+};
+#define LPV_RSM_UNIT 8 /* three */
+
+/* LatticeBlock in shaders/lpv_lattice.glsl (std140). */
+struct lattice_block {
+	int32_t size[4];
+	float origin[4];
+	float sector_a[4], sector_b[4], sector_mu[4];
+	float look[4];
+	float point[4];
+};
+
+#define LPV_LIGHT_FLOATS 16 /* a cell in the light buffers */
+#define LPV_RING 4          /* frames until a check is read back */
+
+struct lpv_check {
+	uint32_t nonfinite, change, largest, bad_texels;
+};
+
+struct lpv {
+	struct gi_method base;
+	struct lattice lattice;
+	struct sectors sectors;
+	float point[3]; /* see struct links */
+	float calibration;
+	int settle_steps;
+	char description[256];
+
+	unsigned step, splat_peak, splat_sum, splat_resolve, check; /* programs */
+	unsigned block, light[2], surface_of, surfaces, inject, blocks, splat, checks;
+	int current; /* light[current] is the newest */
+	struct dispatch per_cell;
+
+	/* What the light stands for. */
+	bool started;
+	uint64_t epoch, rsm_version;
+	float absorption, scattering;
+	int steps_since_change;
+
+	/* Checks come back some frames later. */
+	const volatile struct lpv_check *check_map;
+	void *fences[LPV_RING];
+	unsigned ring;
+	struct gi_stats stats;
+	uint64_t nonfinite_frames;
+};
+
+void lpv_propagate(struct lpv *lpv, int steps);
+
+/* lpv_splat.c: light of the maps into lpv->inject. */
+int lpv_splat_init(struct lpv *lpv);
+void lpv_splat_finish(struct lpv *lpv);
+void lpv_splat(struct lpv *lpv, const struct rsm_set *rsm);
+
+/* lpv_check.c: looks at the newest light, reads what is there of earlier looks. */
+int lpv_check_init(struct lpv *lpv);
+void lpv_check_finish(struct lpv *lpv);
+void lpv_check_submit(struct lpv *lpv);
+void lpv_check_collect(struct lpv *lpv);
+
+#endif
