@@ -13,3 +13,30 @@ tests_unit_test_room_LDADD = tools/libgtools.a $(BASE_LIBS) $(CMOCKA_LIBS)
 tests_unit_test_children_SOURCES = tests/unit/test_children.c tests/unit/unit.h
 tests_unit_test_children_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_children_LDADD = tools/libgtools.a $(BASE_LIBS) $(CMOCKA_LIBS)
+
+# The command from outside. Scripts run in the build folder and read $(srcdir).
+dist_check_SCRIPTS += tests/command/check.sh
+TESTS += tests/command/check.sh
+EXTRA_DIST += \
+	tests/data/bad/bad-lamp-kind.scene \
+	tests/data/bad/empty.cave \
+	tests/data/bad/eye-outside.cave \
+	tests/data/bad/host-name.cave \
+	tests/data/bad/key-missing.cave \
+	tests/data/bad/left-handed.cave \
+	tests/data/bad/misspelt-wall-key.cave \
+	tests/data/bad/model-truncated.scene \
+	tests/data/bad/name-twice.cave \
+	tests/data/bad/neither.conf \
+	tests/data/bad/no-key-off-loopback.cave \
+	tests/data/bad/no-model.scene \
+	tests/data/bad/not-a-rectangle.cave \
+	tests/data/bad/out-of-range.cave \
+	tests/data/bad/parts-overlap.cave \
+	tests/data/bad/port-twice.cave \
+	tests/data/bad/syntax.cave \
+	tests/data/bad/truncated.gltf \
+	tests/data/bad/two-faults.scene \
+	tests/data/bad/unknown-key.cave \
+	tests/data/bad/unknown-method.scene \
+	tests/data/bad/wrong-type.cave

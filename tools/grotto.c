@@ -15,6 +15,7 @@ static const struct command {
 } commands[] = {
 	{ "check", command_check, "check layout and scene files, report gaps between walls" },
 	{ "key", command_key, "make a cluster key" },
+	{ "status", command_status, "ask the running master how its room is" },
 };
 
 #define COMMAND_COUNT (sizeof commands / sizeof commands[0])

@@ -1,8 +1,24 @@
 # The grotto command. Its parts are a library so that tests can link them.
 noinst_LIBRARIES += tools/libgtools.a
 tools_libgtools_a_SOURCES = \
+	tools/ask.c tools/ask.h \
 	tools/children.c tools/children.h \
+	tools/cli.c tools/cli.h \
+	tools/programs.c tools/programs.h \
+	tools/report.c tools/report.h \
 	tools/room.c tools/room.h \
 	tools/say.c tools/say.h \
 	tools/unfold.c tools/unfold.h
-tools_libgtools_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS)
+tools_libgtools_a_CPPFLAGS = $(AM_CPPFLAGS) -DGROTTO_SBINDIR='"$(sbindir)"'
+tools_libgtools_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(JSONC_CFLAGS)
+
+bin_PROGRAMS += tools/grotto
+tools_grotto_SOURCES = \
+	tools/command.h \
+	tools/grotto.c \
+	tools/check.c \
+	tools/key.c \
+	tools/status.c
+tools_grotto_CPPFLAGS = $(AM_CPPFLAGS) -DGROTTO_SBINDIR='"$(sbindir)"'
+tools_grotto_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(JSONC_CFLAGS)
+tools_grotto_LDADD = tools/libgtools.a $(RENDERER_LIBS) $(PROTOCOL_LIBS) $(CONFIG_LIBS) $(JSONC_LIBS)

@@ -1,0 +1,71 @@
+#!/bin/sh
+# grotto check: the shipped files are right, every faulty one is refused with
+# exit status 2 and says what its "// expect:" lines say.
+set -u
+: "${srcdir:=.}" "${builddir:=.}"
+grotto=$builddir/tools/grotto
+failed=0
+[ -x "$grotto" ] || { echo "FAIL: $grotto is not built"; exit 1; }
+fail() {
+	echo "FAIL: $*"
+	failed=1
+}
+
+for file in "$srcdir"/layouts/*.cave "$srcdir"/scenes/*.scene; do
+	[ -e "$file" ] || continue
+	said=$("$grotto" check "$file" 2>&1)
+	status=$?
+	[ $status -eq 0 ] || fail "$file: exit $status: $said"
+done
+
+count=0
+for file in "$srcdir"/tests/data/bad/*.cave "$srcdir"/tests/data/bad/*.scene \
+	    "$srcdir"/tests/data/bad/*.conf; do
+	said=$("$grotto" check "$file" 2>&1)
+	status=$?
+	[ $status -eq 2 ] || fail "$file: exit $status, not 2: $said"
+	case $said in
+	*"$file"*) ;;
+	*) fail "$file: is not named in: $said" ;;
+	esac
+	sed -n 's,^// expect: ,,p' "$file" >"check.expect.$$"
+	while IFS= read -r expected; do
+		case $said in
+		*"$expected"*) ;;
+		*) fail "$file: '$expected' is not in: $said" ;;
+		esac
+	done <"check.expect.$$"
+	rm -f "check.expect.$$"
+	count=$((count + 1))
+done
+[ $count -ge 20 ] || fail "only $count faulty files in $srcdir/tests/data/bad"
+
+# All files are looked at, and one that is wrong decides.
+"$grotto" check "$srcdir/layouts/cave4.cave" "$srcdir/tests/data/bad/empty.cave" >/dev/null 2>&1
+[ $? -eq 2 ] || fail "a right and a wrong file together are not refused"
+"$grotto" check /there/is/none.cave >/dev/null 2>&1
+[ $? -eq 2 ] || fail "a file that is not there is not refused"
+"$grotto" check >/dev/null 2>&1
+[ $? -eq 2 ] || fail "no file is not refused"
+
+# The command table.
+"$grotto" --help | grep -q check || fail "--help does not list the commands"
+"$grotto" --version | grep -q '^grotto [0-9]' || fail "--version"
+"$grotto" chekc 2>&1 | grep -q "did you mean 'check'" || fail "no suggestion for chekc"
+"$grotto" chekc >/dev/null 2>&1
+[ $? -eq 2 ] || fail "an unknown command is not exit 2"
+"$grotto" check --nonsense 2>&1 | grep -q "no option --nonsense" || fail "unknown option"
+
+# A key is made once and never overwritten.
+key=check.key.$$
+rm -f "$key"
+"$grotto" key "$key" >/dev/null || fail "no key was made"
+[ "$(stat -c %a "$key")" = 640 ] || fail "the key's mode is $(stat -c %a "$key")"
+[ "$(wc -c <"$key")" -eq 65 ] || fail "the key has $(wc -c <"$key") bytes"
+before=$(cat "$key")
+"$grotto" key "$key" >/dev/null 2>&1 && fail "an existing key was not refused"
+[ "$(cat "$key")" = "$before" ] || fail "an existing key was overwritten"
+rm -f "$key"
+
+[ $failed -eq 0 ] && echo "ok: $count faulty files refused"
+exit $failed

@@ -1,0 +1,155 @@
+/* grotto status: asks a running master how its room is. */
+#include "base/clock.h"
+#include "base/result.h"
+#include "config/layout.h"
+#include "tools/ask.h"
+#include "tools/cli.h"
+#include "tools/command.h"
+#include "tools/report.h"
+#include "tools/say.h"
+
+#include <errno.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define DEFAULT_SOCKET GROTTO_RUNDIR "/control"
+#define PATIENCE_NS (3 * GR_NS_PER_S)
+
+static void print_histogram(struct json_object *status, const char *what, const char *member)
+{
+	struct json_object *h = report_member(status, member);
+
+	printf("%-22s p50 %8.0f us  p99 %8.0f us  max %8.0f us\n", what, report_number(h, "p50"),
+	       report_number(h, "p99"), report_number(h, "max"));
+}
+
+static void print_nodes(struct json_object *status)
+{
+	struct json_object *nodes = report_member(status, "nodes");
+	size_t count = json_object_is_type(nodes, json_type_array)
+			       ? json_object_array_length(nodes) : 0;
+
+	printf("\n%-14s %-14s %-8s %10s %8s %8s %10s %10s\n", "node", "wall", "state", "swapped",
+	       "missed", "differed", "ready ms", "render ms");
+	for (size_t i = 0; i < count; i++) {
+		struct json_object *node = json_object_array_get_idx(nodes, i);
+
+		printf("%-14s %-14s %-8s %10lld %8lld %8lld %10.2f %10.2f\n",
+		       report_text(node, "name"), report_text(node, "wall"),
+		       report_text(node, "state"), (long long)report_count(node, "swapped"),
+		       (long long)report_count(node, "missed"),
+		       (long long)report_count(node, "mismatches"),
+		       report_number(node, "ready_after_ms"), report_number(node, "render_ms"));
+	}
+}
+
+static void print_bad(struct json_object *status)
+{
+	struct json_object *bad = report_member(status, "wire.bad");
+	bool any = false;
+
+	if (!json_object_is_type(bad, json_type_object))
+		return;
+	json_object_object_foreach(bad, kind, count) {
+		if (json_object_get_int64(count) > 0) {
+			printf("%s%lld %s", any ? ", " : "dropped datagrams: ",
+			       (long long)json_object_get_int64(count), kind);
+			any = true;
+		}
+	}
+	if (any)
+		printf("\n");
+}
+
+static void print_status(struct json_object *status)
+{
+	bool running = json_object_get_boolean(report_member(status, "running"));
+
+	printf("%s, %s: %s, frame %lld, up %.0f s\n", report_text(status, "layout"),
+	       report_text(status, "scene"), running ? "running" : "waiting for nodes",
+	       (long long)report_count(status, "frame"), report_number(status, "uptime_s"));
+	print_nodes(status);
+	printf("\n");
+	print_histogram(status, "swap skew", "skew_us");
+	print_histogram(status, "commit to last swap", "commit_to_last_swap_us");
+	printf("late %lld, evicted %lld, refused %lld; sent %lld bytes (%lld repairs), heard %lld\n",
+	       (long long)report_count(status, "late"), (long long)report_count(status, "evicted"),
+	       (long long)report_count(status, "refused"),
+	       (long long)report_count(status, "wire.bytes_out"),
+	       (long long)report_count(status, "wire.repairs"),
+	       (long long)report_count(status, "wire.bytes_in"));
+	print_bad(status);
+}
+
+static int ask_and_print(const char *socket, bool json)
+{
+	static char answer[ASK_ANSWER_MAX]; /* too large for a stack, used once */
+	struct json_object *status;
+	int result = ask_master(socket, "status", PATIENCE_NS, answer, sizeof answer);
+	int exit_status = GR_EXIT_RUNTIME;
+
+	if (result != GR_OK) {
+		fprintf(stderr, "grotto status: %s: %s\n", socket,
+			result == GR_ERR_IO ? strerror(errno) : gr_result_name(result));
+		return GR_EXIT_RUNTIME;
+	}
+	status = json_tokener_parse(answer);
+	if (!json_object_is_type(status, json_type_object)) {
+		fprintf(stderr, "grotto status: %s: the answer is not JSON\n", socket);
+	} else if (!json_object_get_boolean(report_member(status, "ok"))) {
+		fprintf(stderr, "grotto status: %s: %s\n", socket, report_text(status, "error"));
+	} else {
+		if (json)
+			printf("%s\n", answer);
+		else
+			print_status(status);
+		exit_status = GR_EXIT_OK;
+	}
+	json_object_put(status);
+	return exit_status;
+}
+
+int command_status(int argc, char **argv)
+{
+	const char *socket = NULL, *layout_path = NULL;
+	bool json = false;
+	const struct cli_option options[] = {
+		{ "socket", 's', CLI_TEXT, &socket, 0, 0, "PATH",
+		  "the master's control socket (" DEFAULT_SOCKET ")" },
+		{ "layout", 'l', CLI_TEXT, &layout_path, 0, 0, "FILE", "the socket that this layout names" },
+		{ "json", 'j', CLI_FLAG, &json, 0, 0, NULL, "the answer as it came" },
+	};
+	const struct cli_table table = {
+		"grotto status [--socket PATH | --layout FILE] [--json]",
+		"Asks the running master how its room is: nodes, frames, timing, datagrams.",
+		options, sizeof options / sizeof options[0]
+	};
+	struct layout *layout = NULL;
+	struct gr_diag diag = { 0 };
+	int words;
+	int status = GR_EXIT_CONFIG;
+
+	switch (cli_parse(&table, argc, argv, &words)) {
+	case CLI_HELP: return GR_EXIT_OK;
+	case CLI_WRONG: return GR_EXIT_CONFIG;
+	case CLI_RUN: break;
+	}
+	if (words != 0 || (socket && layout_path)) {
+		fprintf(stderr, "grotto status: give --socket PATH or --layout FILE, not both\n");
+		return GR_EXIT_CONFIG;
+	}
+	if (layout_path) {
+		int result = layout_load(layout_path, &layout, &diag);
+
+		say_diag(&diag);
+		gr_diag_finish(&diag);
+		if (result != GR_OK)
+			return GR_EXIT_CONFIG;
+		socket = layout->control_socket;
+	}
+	status = ask_and_print(socket ? socket : DEFAULT_SOCKET, json);
+	layout_destroy(&layout);
+	return status;
+}
