@@ -1,0 +1,234 @@
+/* grotto demo: a whole cave on this machine. */
+#include <config.h> /* asprintf */
+
+#include "tools/demo.h"
+
+#include "base/clock.h"
+#include "base/result.h"
+#include "tools/cli.h"
+#include "tools/command.h"
+#include "tools/demo_plan.h"
+#include "tools/programs.h"
+#include "tools/say.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define DEFAULT_LAYOUT "layouts/cave4.cave"
+#define DEFAULT_SCENE "scenes/grotto.scene"
+
+char *demo_path(const struct demo *demo, const char *name, const char *suffix)
+{
+	char *path = NULL;
+
+	if (asprintf(&path, "%s/%s%s", demo->options.out, name, suffix) < 0)
+		return NULL;
+	return path;
+}
+
+void demo_node_file(const struct layout_node *node, char name[LAYOUT_NAME_MAX + 8])
+{
+	snprintf(name, LAYOUT_NAME_MAX + 8, "node-%s", node->name);
+}
+
+/* Every folder of the path. */
+static int make_folders(const char *path)
+{
+	char *copy = strdup(path);
+	int result = GR_OK;
+
+	if (!copy)
+		return GR_ERR_NOMEM;
+	for (char *at = copy + 1; result == GR_OK; at++) {
+		char saved = *at;
+
+		if (saved != '/' && saved != '\0')
+			continue;
+		*at = '\0';
+		if (mkdir(copy, 0755) != 0 && errno != EEXIST)
+			result = GR_ERR_IO;
+		*at = saved;
+		if (saved == '\0')
+			break;
+	}
+	free(copy);
+	return result;
+}
+
+/* In a folder of its own under /tmp: a socket's path may only be short. */
+static int make_socket_path(struct demo *demo)
+{
+	char folder[] = "/tmp/grotto-XXXXXX";
+
+	if (!mkdtemp(folder))
+		return GR_ERR_IO;
+	snprintf(demo->socket_folder, sizeof demo->socket_folder, "%s", folder);
+	snprintf(demo->socket, sizeof demo->socket, "%s/control", folder);
+	return GR_OK;
+}
+
+static int load(struct demo *demo, struct gr_diag *diag)
+{
+	int result = layout_load(demo->options.layout, &demo->layout, diag);
+	int scene_result = scene_file_load(demo->options.scene, &demo->scene, diag);
+
+	return result != GR_OK ? result : scene_result;
+}
+
+static int write_layout(const struct demo *demo)
+{
+	FILE *file = fopen(demo->layout_path, "we");
+	int result;
+
+	if (!file)
+		return GR_ERR_IO;
+	result = layout_write(file, demo->layout);
+	if (fclose(file) != 0 && result == GR_OK)
+		result = GR_ERR_IO;
+	return result;
+}
+
+static int prepare(struct demo *demo, struct gr_diag *diag)
+{
+	struct demo_plan plan = {
+		.control_socket = demo->socket,
+		.pixels_scale = demo->options.pixels_scale,
+		.window = demo->options.window,
+		.stereo = demo->options.stereo,
+		.rate_hz = demo->options.rate_hz,
+	};
+	int result = make_folders(demo->options.out);
+
+	if (result == GR_OK)
+		result = make_socket_path(demo);
+	if (result != GR_OK) {
+		gr_diag_add(diag, GR_DIAG_ERROR, demo->options.out, 0, NULL, "%s",
+			    strerror(errno));
+		return result;
+	}
+	result = demo_plan_apply(&plan, demo->layout, diag);
+	if (result != GR_OK)
+		return result;
+	demo->layout_path = demo_path(demo, "layout", ".cave");
+	demo->scene_path = realpath(demo->options.scene, NULL);
+	if (!demo->layout_path || !demo->scene_path)
+		return GR_ERR_NOMEM;
+	result = write_layout(demo);
+	if (result != GR_OK)
+		gr_diag_add(diag, GR_DIAG_ERROR, demo->layout_path, 0, NULL, "%s",
+			    result == GR_ERR_IO ? strerror(errno) : gr_result_name(result));
+	return result;
+}
+
+static void demo_finish(struct demo *demo)
+{
+	if (demo->socket_folder[0]) {
+		unlink(demo->socket); /* the master's, should it have been killed */
+		rmdir(demo->socket_folder);
+	}
+	free(demo->layout_path);
+	free(demo->scene_path);
+	layout_destroy(&demo->layout);
+	scene_file_destroy(&demo->scene);
+}
+
+static int run(struct demo *demo)
+{
+	int faults;
+
+	if (children_start(&demo->children) != GR_OK) {
+		fprintf(stderr, "grotto demo: %s\n", strerror(errno));
+		return GR_EXIT_RUNTIME;
+	}
+	printf("%s: %zu walls, %zu nodes, %d frames of %s into %s\n", demo->layout->name,
+	       demo->layout->wall_count, demo->layout->node_count, demo->options.frames,
+	       demo->scene->name, demo->options.out);
+	fflush(stdout);
+	faults = demo_run(demo) == GR_OK ? demo_summary(demo) : -1;
+	if (demo->children.count == demo->layout->node_count + 1 && !demo->interrupted &&
+	    demo_room(demo) != GR_OK)
+		faults = -1;
+	children_finish(&demo->children);
+	return faults == 0 ? GR_EXIT_OK : GR_EXIT_RUNTIME;
+}
+
+static int plan_and_run(struct demo *demo)
+{
+	struct gr_diag diag = { 0 };
+	int result = load(demo, &diag);
+
+	if (result == GR_OK)
+		result = prepare(demo, &diag);
+	say_diag(&diag);
+	gr_diag_finish(&diag);
+	if (result == GR_ERR_CONFIG)
+		return GR_EXIT_CONFIG;
+	return result == GR_OK ? run(demo) : GR_EXIT_RUNTIME;
+}
+
+int command_demo(int argc, char **argv)
+{
+	struct demo d = { .options = { .out = "grotto-demo", .frames = 120, .deadline_ms = 60000,
+				       .patience_s = 300, .pixels_scale = 1 } };
+	struct demo_options *o = &d.options;
+	const struct cli_option options[] = {
+		{ "layout", 0, CLI_TEXT, &o->layout, 0, 0, "FILE", "the cave (the shipped four walls)" },
+		{ "scene", 0, CLI_TEXT, &o->scene, 0, 0, "FILE", "what is in it (the shipped grotto)" },
+		{ "frames", 0, CLI_INT, &o->frames, 1, 10000000, "N", "how many (120)" },
+		{ "out", 'o', CLI_TEXT, &o->out, 0, 0, "DIR", "where results go (grotto-demo)" },
+		{ "every", 0, CLI_INT, &o->every, 1, 10000000, "K",
+		  "save pictures of every Kth frame; the last always" },
+		{ "exr", 0, CLI_FLAG, &o->exr, 0, 0, NULL, "save scene-linear radiance too" },
+		{ "window", 0, CLI_FLAG, &o->window, 0, 0, NULL, "show the walls in windows" },
+		{ "pixels-scale", 0, CLI_REAL, &o->pixels_scale, 0.001, 16, "S",
+		  "walls of S times the layout's pixels (1)" },
+		{ "stereo", 0, CLI_FLAG, &o->stereo, 0, 0, NULL,
+		  "both eyes side by side where the layout has one" },
+		{ "rate", 0, CLI_REAL, &o->rate_hz, 0.1, 1000, "HZ",
+		  "frames a second in real time; else as fast as all walls can" },
+		{ "deadline-ms", 0, CLI_INT, &o->deadline_ms, 1, 600000, "MS",
+		  "of the swap barrier: later nodes are left out of a swap (60000)" },
+		{ "patience", 0, CLI_INT, &o->patience_s, 1, 86400, "S",
+		  "give up after so long without a new frame (300)" },
+	};
+	const struct cli_table table = {
+		"grotto demo [--layout FILE] [--scene FILE] [--frames N] [--out DIR]",
+		"Runs grotto-master and a grotto-node per node of the layout on this machine, over\n"
+		"real UDP on 127.0.0.1. Leaves in DIR the pictures of each wall, room.png (the\n"
+		"unfolded room), summary.json, and each process' log and report. Fails when a node\n"
+		"missed a frame, held another state than the master, or died.",
+		options, sizeof options / sizeof options[0]
+	};
+	char *layout, *scene;
+	int words;
+	int status = GR_EXIT_CONFIG;
+
+	switch (cli_parse(&table, argc, argv, &words)) {
+	case CLI_HELP: return GR_EXIT_OK;
+	case CLI_WRONG: return GR_EXIT_CONFIG;
+	case CLI_RUN: break;
+	}
+	layout = o->layout ? NULL : programs_data(DEFAULT_LAYOUT);
+	scene = o->scene ? NULL : programs_data(DEFAULT_SCENE);
+	if (layout)
+		o->layout = layout;
+	if (scene)
+		o->scene = scene;
+	if (words != 0)
+		fprintf(stderr, "grotto demo: '%s' is no option; a layout is given by --layout\n",
+			argv[1]);
+	else if (!o->layout || !o->scene)
+		fprintf(stderr, "grotto demo: the shipped %s is not installed: give --%s FILE\n",
+			o->layout ? DEFAULT_SCENE : DEFAULT_LAYOUT,
+			o->layout ? "scene" : "layout");
+	else
+		status = plan_and_run(&d);
+	demo_finish(&d);
+	free(layout);
+	free(scene);
+	return status;
+}
