@@ -21,3 +21,14 @@ config_libgconfig_a_SOURCES = \
 	config/scene_write.c \
 	config/suggest.c config/suggest.h
 config_libgconfig_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(LIBCONFIG_CFLAGS) $(SODIUM_CFLAGS)
+
+# Prints the option tables for the docs: "make docs-options" after changing one.
+noinst_PROGRAMS += config/reference
+config_reference_SOURCES = config/reference.c
+config_reference_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(LIBCONFIG_CFLAGS)
+config_reference_LDADD = $(CONFIG_LIBS)
+
+.PHONY: docs-options
+docs-options: config/reference
+	config/reference layout $(srcdir)/docs/layout.md
+	config/reference scene $(srcdir)/docs/scene.md

@@ -45,12 +45,21 @@ static void print_range(FILE *file, const struct option *option)
 	}
 }
 
+/* "0 1.7 0" as [0, 1.7, 0]. */
+static void print_vector(FILE *file, const char *text)
+{
+	fputs("`[", file);
+	for (; *text; text++)
+		fputs(*text == ' ' ? ", " : (char[]){ *text, '\0' }, file);
+	fputs("]`", file);
+}
+
 static void print_default(FILE *file, const struct option *option)
 {
 	if (option->required)
 		fputs("**required**", file);
 	else if (option->standard && option->count > 1)
-		fprintf(file, "`[%s]`", option->standard);
+		print_vector(file, option->standard);
 	else if (option->standard && (option->type == OPTION_NAME || option->type == OPTION_STRING ||
 				      option->type == OPTION_CHOICE))
 		fprintf(file, "`\"%s\"`", option->standard);

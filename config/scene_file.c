@@ -134,15 +134,21 @@ static void hash_lamp(struct canonical *c, const struct scene_lamp *lamp)
 	canonical_u64(c, lamp->kind);
 	canonical_u64(c, lamp->mount);
 	canonical_u64(c, lamp->on);
-	canonical_floats(c, lamp->position, 3);
 	canonical_floats(c, lamp->direction, 3);
 	canonical_floats(c, lamp->intensity, 3);
-	canonical_floats(c, &lamp->cone_rad, 1);
-	canonical_floats(c, &lamp->penumbra_rad, 1);
 	canonical_floats(c, &lamp->radius_m, 1);
-	canonical_floats(c, lamp->orbit_center, 3);
-	canonical_floats(c, &lamp->orbit_radius_m, 1);
-	canonical_floats(c, &lamp->orbit_period_s, 1);
+	/* What the kind and mount do not use does not count: scene_file_write leaves it out. */
+	if (lamp->mount == SCENE_MOUNT_ORBIT) {
+		canonical_floats(c, lamp->orbit_center, 3);
+		canonical_floats(c, &lamp->orbit_radius_m, 1);
+		canonical_floats(c, &lamp->orbit_period_s, 1);
+	} else {
+		canonical_floats(c, lamp->position, 3);
+	}
+	if (lamp->kind == SCENE_LAMP_SPOT) {
+		canonical_floats(c, &lamp->cone_rad, 1);
+		canonical_floats(c, &lamp->penumbra_rad, 1);
+	}
 }
 
 void scene_file_hash(const struct scene_file *file, uint8_t out[32])
@@ -171,9 +177,11 @@ void scene_file_hash(const struct scene_file *file, uint8_t out[32])
 	canonical_floats(&c, file->background, 3);
 	canonical_u64(&c, tone->curve);
 	canonical_floats(&c, &tone->exposure, 1);
-	canonical_floats(&c, &tone->gamma_display, 1);
-	canonical_floats(&c, &tone->gamma_end_to_end, 1);
 	canonical_u64(&c, tone->srgb);
+	if (!tone->srgb) {
+		canonical_floats(&c, &tone->gamma_display, 1);
+		canonical_floats(&c, &tone->gamma_end_to_end, 1);
+	}
 	canonical_floats(&c, &file->near_m, 1);
 	canonical_floats(&c, &file->far_m, 1);
 	canonical_u64(&c, (uint64_t)file->shadow_pixels);

@@ -1,8 +1,21 @@
 #include "base/result.h"
 #include "config/scene_options.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Leaves out what the lamp does not use: the reader would warn about it. */
+static void fill_lamp(const struct scene_lamp *from, struct scene_form_lamp *to)
+{
+	to->lamp = *from;
+	if (from->kind != SCENE_LAMP_SPOT)
+		to->lamp.cone_rad = to->lamp.penumbra_rad = NAN;
+	if (from->mount == SCENE_MOUNT_ORBIT)
+		to->lamp.position[0] = NAN;
+	else
+		to->lamp.orbit_center[0] = to->lamp.orbit_radius_m = to->lamp.orbit_period_s = NAN;
+}
 
 int scene_file_write(FILE *out, const struct scene_file *file)
 {
@@ -26,7 +39,7 @@ int scene_file_write(FILE *out, const struct scene_file *file)
 	form.lamps = lamps;
 	form.lamp_count = file->lamp_count;
 	for (size_t i = 0; i < file->lamp_count; i++)
-		lamps[i].lamp = file->lamps[i];
+		fill_lamp(&file->lamps[i], &lamps[i]);
 	form.cameras = cameras;
 	form.camera_count = file->camera_count;
 	for (size_t i = 0; i < file->camera_count; i++)
@@ -37,6 +50,8 @@ int scene_file_write(FILE *out, const struct scene_file *file)
 	form.medium.scattering_per_m = file->scattering_per_m;
 	form.tone.tone = file->tone;
 	form.tone.ambient = OPTION_ABSENT;
+	if (form.tone.tone.srgb)
+		form.tone.tone.gamma_end_to_end = form.tone.tone.gamma_display = NAN;
 	glm_vec3_copy((float *)file->room.p, form.room.position);
 	form.room.heading_rad = file->room_heading_rad;
 	options_write(out, scene_options, &form);

@@ -56,9 +56,10 @@ void suggest_offer(struct suggest *suggest, const char *candidate)
 	size_t distance = suggest_distance(suggest->word, candidate);
 	size_t shorter = least(strlen(suggest->word), strlen(candidate));
 
-	/* "pixel" for "pixels", "heading" for "heading_deg": a whole beginning counts as near. */
-	if (distance > 2 && shorter >= 4 && !strncmp(suggest->word, candidate, shorter))
-		distance = 2;
+	/* "far" for "far_m", "lower" for "lower_left": a whole beginning counts as near. */
+	if (distance > 1 && !strncmp(suggest->word, candidate, shorter) &&
+	    (shorter >= 4 || candidate[shorter] == '_'))
+		distance = 1;
 	if (distance < suggest->distance) {
 		suggest->distance = distance;
 		suggest->best = candidate;
