@@ -49,10 +49,14 @@ void renderer_destroy(struct renderer **renderer);
 /*
  * Submits one frame for the wall. GR_OK, or GR_NOTHING when an eye is where
  * no picture exists (behind the wall): the last picture stays and is counted.
- * Does not wait for the GPU.
+ * Does not wait for the GPU. What did not change is not drawn again: without a
+ * change of lamps, light, medium or head the last picture stays as it is.
+ *
+ * GR_ERR_STATE without a wall, GR_ERR_RANGE for a frame with a pose or a
+ * number that is not finite, GR_ERR_GL.
  */
 int renderer_draw(struct renderer *renderer, const struct render_frame *frame);
-/* A still from a camera of the scene file instead of the wall. */
+/* A still from a camera of the scene file instead of the wall; one eye only (RENDERER_MONO). */
 int renderer_draw_camera(struct renderer *renderer, const struct render_frame *frame,
 			 const struct scene_camera *camera);
 /*
@@ -61,7 +65,11 @@ int renderer_draw_camera(struct renderer *renderer, const struct render_frame *f
  */
 int renderer_finished(struct renderer *renderer, int64_t wait_ns);
 
-/* Final picture as encoded 8 bit RGB (3 bytes a pixel, row 0 top) of the whole target. Waits. */
+/*
+ * Final picture as encoded 8 bit RGB (3 bytes a pixel, row 0 top) of what
+ * renderer_target_size says; of quad-buffer the left eye. Waits. In a window
+ * it is there only before the swap.
+ */
 int renderer_read_rgb(struct renderer *renderer, uint8_t *rgb);
 /* Scene-linear radiance of one eye, 3 channels; needs keep_radiance. Waits. */
 int renderer_read_radiance(struct renderer *renderer, int eye, struct image *out);
@@ -74,7 +82,8 @@ struct timers *renderer_timers(struct renderer *renderer);
 struct renderer_stats {
 	uint64_t frames, skipped_eyes;
 	uint64_t shadow_updates, gi_updates; /* frames in which the stage ran */
-	uint64_t gl_errors, nonfinite;
+	uint64_t gl_errors;
+	uint64_t nonfinite; /* pixels, and cells of the light field, that were not finite */
 };
 void renderer_stats(const struct renderer *renderer, struct renderer_stats *out);
 

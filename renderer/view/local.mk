@@ -1,2 +1,20 @@
 # renderer/view, renderer/tone
-RENDERER_SOURCES += renderer/view/projection.c renderer/view/projection.h
+RENDERER_SOURCES += \
+	renderer/tone/tone.c renderer/tone/tone.h \
+	renderer/view/blocks.h \
+	renderer/view/emissive.c renderer/view/emissive.h \
+	renderer/view/eyes.c renderer/view/eyes.h \
+	renderer/view/gbuffer.c renderer/view/gbuffer.h \
+	renderer/view/maps.c renderer/view/maps.h \
+	renderer/view/patches.c renderer/view/patches.h \
+	renderer/view/projection.c renderer/view/projection.h \
+	renderer/view/rsm.c renderer/view/rsm.h \
+	renderer/view/shade.c renderer/view/shade.h \
+	renderer/view/shadow.c renderer/view/shadow.h
+SHADERS += \
+	renderer/shaders/depth.vert renderer/shaders/gbuffer.frag \
+	renderer/shaders/gi_none.glsl renderer/shaders/lamp.glsl \
+	renderer/shaders/lamp_shadow.glsl renderer/shaders/medium.glsl \
+	renderer/shaders/patch.glsl renderer/shaders/patch_shadow.glsl \
+	renderer/shaders/rsm.frag renderer/shaders/screen.vert renderer/shaders/shade.frag \
+	renderer/shaders/shadow.glsl renderer/shaders/surface.vert renderer/shaders/tone.frag

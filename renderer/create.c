@@ -1,0 +1,167 @@
+#include "renderer/renderer_private.h"
+
+#include "base/result.h"
+
+#include <stdlib.h>
+
+static int check_params(const struct renderer_params *params, const struct target *target)
+{
+	int want[2], have[2];
+
+	if (params->width < 1 || params->height < 1) {
+		gr_error("renderer: a picture of %d x %d pixels", params->width, params->height);
+		return GR_ERR_RANGE;
+	}
+	renderer_target_size(params, &want[0], &want[1]);
+	target_size(target, &have[0], &have[1]);
+	if (have[0] < want[0] || have[1] < want[1]) {
+		gr_error("renderer: the target has %d x %d pixels, the wall's eyes need %d x %d",
+			 have[0], have[1], want[0], want[1]);
+		return GR_ERR_RANGE;
+	}
+	return GR_OK;
+}
+
+/* Shadow, emissive and illumination stages, each only where the scene has use for it. */
+static int create_light(struct renderer *r, const struct emissive_patches *patches)
+{
+	bool gi = r->file->gi.method != SCENE_GI_NONE;
+	int lamp_layers = shadow_layers(r->file);
+	int layers = lamp_layers + emissive_layers(patches);
+	int result = GR_OK;
+
+	if (gi && layers > 0)
+		result = rsm_create(&r->rsm, r->file->gi.rsm_pixels, layers, lamp_layers > 0,
+				    patches->count > 0);
+	if (result == GR_OK && lamp_layers > 0)
+		result = shadow_create(&r->shadow, r->file, r->scene, r->mesh, r->rsm);
+	if (result == GR_OK && patches->count > 0)
+		result = emissive_create(&r->emissive, patches, r->scene, r->mesh,
+					 r->file->shadow_pixels, r->rsm, lamp_layers);
+	if (result == GR_OK && r->rsm)
+		result = gi_lpv_create(&r->gi, r->scene, r->file);
+	return result;
+}
+
+static int create_pictures(struct renderer *r)
+{
+	const struct shade_parts parts = { r->shadow, r->emissive, r->gi };
+	bool emissive = r->emissive != NULL;
+	int result = gbuffer_program(&r->gbuffer_program, emissive);
+
+	if (result == GR_OK)
+		result = shade_program(&r->shade_program, &parts, r->params.keep_radiance);
+	for (int i = 0; i < r->eye_count && result == GR_OK; i++) {
+		result = gbuffer_init(&r->eyes[i].gbuffer, r->params.width, r->params.height,
+				      emissive);
+		if (result == GR_OK)
+			result = shade_picture_init(&r->eyes[i].picture, r->params.width,
+						    r->params.height, r->params.keep_radiance);
+	}
+	if (result == GR_OK)
+		result = tone_create(&r->tone);
+	if (result == GR_OK)
+		result = timers_create(&r->timers);
+	if (result == GR_OK) {
+		glCreateBuffers(1, &r->frame_buffer);
+		glNamedBufferStorage(r->frame_buffer, sizeof(struct frame_block), NULL,
+				     GL_DYNAMIC_STORAGE_BIT);
+		if (glGetError() == GL_OUT_OF_MEMORY) {
+			gr_error("renderer: the GPU's memory does not hold the pictures and maps");
+			result = GR_ERR_GL;
+		}
+	}
+	return result;
+}
+
+static void log_stages(const struct renderer *r, const struct emissive_patches *patches)
+{
+	if (r->shadow)
+		gr_info("stage shadow: %zu lamps, %d maps of %d x %d, drawn when a lamp moves",
+			r->file->lamp_count, shadow_layers(r->file), r->file->shadow_pixels,
+			r->file->shadow_pixels);
+	else
+		gr_info("stage shadow: none, the scene has no lamps");
+	if (r->emissive)
+		gr_info("stage emissive: %zu emissive triangles as %d patches in %d groups, "
+			"hemicubes of %d x %d drawn once, flux %.4g %.4g %.4g W",
+			patches->triangles, patches->count, patches->group_count,
+			emissive_pixels(r->emissive), emissive_pixels(r->emissive),
+			patches->flux[0], patches->flux[1], patches->flux[2]);
+	else
+		gr_info("stage emissive: none, no surface of the scene emits");
+	if (r->gi)
+		gr_info("stage gi: %s: %s", r->gi->ops->name, r->gi->ops->describe(r->gi));
+	else
+		gr_info("stage gi: none, %s",
+			r->file->gi.method == SCENE_GI_NONE ? "the scene file asks for none"
+							    : "there is no lamp and nothing emits");
+	gr_info("stages gbuffer and shade: %d picture%s of %d x %d, drawn when the eye or the "
+		"light changes",
+		r->eye_count, r->eye_count > 1 ? "s" : "", r->params.width, r->params.height);
+	gr_info("stage tone: %s, %s", r->file->tone.curve == SCENE_CURVE_REINHARD ? "L/(1+L)" : "linear",
+		r->file->tone.srgb ? "sRGB" : "power law");
+}
+
+int renderer_create(struct renderer **out, struct target *target,
+		    const struct renderer_params *params, const struct scene_file *file,
+		    const struct scene *scene)
+{
+	struct emissive_patches patches;
+	struct renderer *r;
+	int result = check_params(params, target);
+
+	*out = NULL;
+	if (result != GR_OK)
+		return result;
+	r = calloc(1, sizeof(*r));
+	if (!r)
+		return GR_ERR_NOMEM;
+	r->target = target;
+	r->file = file;
+	r->scene = scene;
+	r->params = *params;
+	r->eye_count = eyes_count(params->eyes);
+	r->fresh = true;
+	result = gl_mesh_create(&r->mesh, scene);
+	if (result == GR_OK)
+		result = emissive_patches(scene, &patches);
+	if (result == GR_OK)
+		result = create_light(r, &patches);
+	if (result == GR_OK)
+		result = create_pictures(r);
+	if (result != GR_OK) {
+		gr_error("renderer: %s", gr_result_name(result));
+		renderer_destroy(&r);
+		return result;
+	}
+	log_stages(r, &patches);
+	*out = r;
+	return GR_OK;
+}
+
+void renderer_destroy(struct renderer **renderer)
+{
+	struct renderer *r = *renderer;
+
+	if (!r)
+		return;
+	glDeleteSync(r->fence);
+	glDeleteBuffers(1, &r->frame_buffer);
+	timers_destroy(&r->timers);
+	tone_destroy(&r->tone);
+	for (int i = 0; i < EYES_MAX; i++) {
+		shade_picture_finish(&r->eyes[i].picture);
+		gbuffer_finish(&r->eyes[i].gbuffer);
+	}
+	program_destroy(&r->shade_program);
+	program_destroy(&r->gbuffer_program);
+	if (r->gi)
+		r->gi->ops->destroy(r->gi);
+	emissive_destroy(&r->emissive);
+	shadow_destroy(&r->shadow);
+	rsm_destroy(&r->rsm);
+	gl_mesh_destroy(&r->mesh);
+	free(r);
+	*renderer = NULL;
+}

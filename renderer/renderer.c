@@ -1,0 +1,289 @@
+#include "renderer/renderer_private.h"
+
+#include "base/clock.h"
+#include "base/result.h"
+
+#include <math.h>
+#include <string.h>
+
+/*
+ * log2 of what a metre lets through, (1 - sigma). From sigma 1 on nothing gets
+ * through, written as a number that stays finite times any distance.
+ */
+static float log2_transmittance(float sigma)
+{
+	if (sigma <= 0)
+		return 0;
+	return sigma < 1 ? log2f(1 - sigma) : -1e6f;
+}
+
+static void store_frame_block(struct renderer *r)
+{
+	struct frame_block block = {
+		.medium = { log2_transmittance(r->absorption + r->scattering),
+			    log2_transmittance(r->absorption), 0, 0 },
+	};
+
+	memcpy(block.bounds_min, r->scene->min, sizeof(r->scene->min));
+	memcpy(block.bounds_max, r->scene->max, sizeof(r->scene->max));
+	memcpy(block.background, r->file->background, sizeof(r->file->background));
+	glNamedBufferSubData(r->frame_buffer, 0, sizeof(block), &block);
+}
+
+/* True when the medium is not that of the last frame. */
+static bool take_medium(struct renderer *r, const struct render_frame *frame)
+{
+	bool changed = r->fresh || r->absorption != frame->absorption_per_m ||
+		       r->scattering != frame->scattering_per_m;
+
+	if (changed) {
+		r->absorption = frame->absorption_per_m;
+		r->scattering = frame->scattering_per_m;
+		store_frame_block(r);
+	}
+	glBindBufferBase(GL_UNIFORM_BUFFER, VIEW_BINDING_FRAME, r->frame_buffer);
+	return changed;
+}
+
+/* Maps of what moved. True when the light on the surfaces is another one. */
+static bool draw_shadow(struct renderer *r, const struct render_frame *frame, bool medium_changed)
+{
+	int change = r->shadow ? shadow_take(r->shadow, frame) : SHADOW_SAME;
+	bool lamps = change != SHADOW_SAME || (r->shadow && medium_changed);
+	bool emissive = r->emissive && emissive_wants(r->emissive, medium_changed);
+
+	if (lamps || emissive) {
+		timers_begin(r->timers, STAGE_SHADOW, "shadow");
+		if (lamps)
+			shadow_draw(r->shadow, medium_changed);
+		if (emissive)
+			emissive_draw(r->emissive);
+		timers_end(r->timers, STAGE_SHADOW);
+		r->stats.shadow_updates++;
+	}
+	return lamps || emissive;
+}
+
+/* The light field. *changed is set when it is another one. */
+static int update_gi(struct renderer *r, const struct render_frame *frame, bool *changed)
+{
+	struct gi_stats gi;
+	int result;
+
+	if (!r->gi)
+		return GR_OK;
+	if (r->fresh || frame->gi_on != r->gi_on)
+		*changed = true;
+	r->gi_on = frame->gi_on;
+	if (!frame->gi_on)
+		return GR_OK;
+	timers_begin(r->timers, STAGE_GI, "gi");
+	result = r->gi->ops->update(r->gi, frame, rsm_frame(r->rsm));
+	timers_end(r->timers, STAGE_GI);
+	if (result < 0)
+		return result;
+	r->gi->ops->stats(r->gi, &gi);
+	if (gi.ran) {
+		r->stats.gi_updates++;
+		*changed = true;
+	}
+	return GR_OK;
+}
+
+static bool take_tone(struct renderer *r, const struct render_frame *frame)
+{
+	struct tone_values values = { frame->exposure, frame->curve, frame->gamma_encode,
+				      frame->srgb };
+	bool changed = r->fresh || values.exposure != r->tone_values.exposure ||
+		       values.curve != r->tone_values.curve ||
+		       values.gamma_encode != r->tone_values.gamma_encode ||
+		       values.srgb != r->tone_values.srgb;
+
+	r->tone_values = values;
+	return changed;
+}
+
+/* Where an eye is in the scene and what it sees the wall through. */
+static int eye_view(const struct renderer *r, int index, const struct render_frame *frame,
+		    const struct scene_camera *camera, mat4 view_projection, vec3 position)
+{
+	struct projection p;
+	vec3 eye;
+	int result;
+
+	if (camera) {
+		memcpy(position, camera->position, sizeof(vec3));
+		result = projection_camera(camera->position, camera->target, camera->up,
+					   camera->vfov_rad,
+					   (float)r->params.width / (float)r->params.height,
+					   r->file->near_m, r->file->far_m, &p);
+		if (result == GR_OK)
+			glm_mat4_copy(p.view_projection, view_projection);
+		return result;
+	}
+	eyes_position(r->params.eyes, index, frame, eye);
+	result = projection_off_axis(&r->params.wall, eye, r->file->near_m, r->file->far_m, &p);
+	if (result == GR_OK) {
+		struct gr_pose T_room_scene;
+		mat4 m;
+
+		gr_pose_inverse(&frame->T_scene_room, &T_room_scene);
+		gr_pose_mat4(&T_room_scene, m);
+		glm_mat4_mul(p.view_projection, m, view_projection);
+		gr_pose_point(&frame->T_scene_room, eye, position);
+	}
+	return result;
+}
+
+/* Radiance of one eye. GR_NOTHING: no picture from there, the old one stays. */
+static int draw_eye(struct renderer *r, int index, const struct render_frame *frame,
+		    const struct scene_camera *camera, bool light_changed, bool *drawn)
+{
+	const struct shade_parts parts = { r->shadow, r->emissive, r->gi };
+	struct renderer_eye *eye = &r->eyes[index];
+	mat4 view_projection;
+	vec3 position;
+	bool moved;
+
+	*drawn = false;
+	if (eye_view(r, index, frame, camera, view_projection, position) != GR_OK) {
+		r->stats.skipped_eyes++;
+		/* its surfaces are lit as they were; they are shaded anew once it is back */
+		if (light_changed)
+			eye->drawn = false;
+		return GR_NOTHING;
+	}
+	moved = !eye->drawn ||
+		memcmp(view_projection, eye->view_projection, sizeof(mat4)) != 0 ||
+		memcmp(position, eye->position, sizeof(vec3)) != 0;
+	if (moved) {
+		glm_mat4_copy(view_projection, eye->view_projection);
+		memcpy(eye->position, position, sizeof(vec3));
+		timers_begin(r->timers, STAGE_GBUFFER, "gbuffer");
+		gbuffer_draw(&eye->gbuffer, r->gbuffer_program, r->mesh, view_projection);
+		timers_end(r->timers, STAGE_GBUFFER);
+	}
+	if (moved || light_changed) {
+		timers_begin(r->timers, STAGE_SHADE, "shade");
+		shade_draw(&eye->picture, r->shade_program, &parts, &eye->gbuffer, position,
+			   r->gi_on);
+		timers_end(r->timers, STAGE_SHADE);
+		*drawn = true;
+	}
+	eye->drawn = true;
+	return GR_OK;
+}
+
+static void tone_eye(struct renderer *r, int index)
+{
+	const struct eyes_place place = eyes_place(&r->params, index);
+
+	timers_begin(r->timers, STAGE_TONE, "tone");
+	tone_draw(r->tone, &r->tone_values, r->eyes[index].picture.radiance,
+		  target_framebuffer(r->target, place.buffer), place.x, place.y, r->params.width,
+		  r->params.height);
+	timers_end(r->timers, STAGE_TONE);
+}
+
+/* What went wrong in the frame, counted; a line a minute. */
+static void count_errors(struct renderer *r)
+{
+	uint64_t before = r->stats.nonfinite, since;
+	GLenum error;
+
+	for (int i = 0; i < 8 && (error = glGetError()) != GL_NO_ERROR; i++) {
+		r->stats.gl_errors++;
+		if (gr_log_limit(&r->error_limit, gr_clock_now(&gr_clock_monotonic), &since))
+			gr_error("OpenGL error 0x%04x in frame %llu (%llu since the last such line)",
+				 error, (unsigned long long)r->stats.frames,
+				 (unsigned long long)since);
+	}
+	r->stats.nonfinite = tone_nonfinite(r->tone);
+	if (r->stats.nonfinite != before &&
+	    gr_log_limit(&r->nonfinite_limit, gr_clock_now(&gr_clock_monotonic), &since))
+		gr_error("%llu pixels so far were not finite and are shown in magenta",
+			 (unsigned long long)r->stats.nonfinite);
+}
+
+static void end_frame(struct renderer *r)
+{
+	tone_frame(r->tone);
+	timers_frame(r->timers);
+	glDeleteSync(r->fence);
+	r->fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+	glFlush();
+	r->stats.frames++;
+	r->fresh = false;
+	count_errors(r);
+}
+
+static int draw_frame(struct renderer *r, const struct render_frame *frame,
+		      const struct scene_camera *camera)
+{
+	bool medium = take_medium(r, frame);
+	bool light = draw_shadow(r, frame, medium) || medium;
+	int result = update_gi(r, frame, &light);
+	bool tone = take_tone(r, frame);
+
+	if (result < 0)
+		return result;
+	result = GR_OK;
+	for (int i = 0; i < r->eye_count; i++) {
+		/* a window forgets its picture at the swap, a framebuffer does not */
+		bool forgets = target_framebuffer(r->target, eyes_place(&r->params, i).buffer) == 0;
+		bool drawn;
+
+		if (draw_eye(r, i, frame, camera, light, &drawn) != GR_OK)
+			result = GR_NOTHING;
+		if (drawn || tone || forgets)
+			tone_eye(r, i);
+	}
+	end_frame(r);
+	return result;
+}
+
+static bool frame_valid(const struct render_frame *frame)
+{
+	return gr_pose_valid(&frame->T_scene_room) && gr_pose_valid(&frame->T_room_head) &&
+	       isfinite(frame->eye_separation_m) && frame->absorption_per_m >= 0 &&
+	       frame->scattering_per_m >= 0 && isfinite(frame->absorption_per_m) &&
+	       isfinite(frame->scattering_per_m) && isfinite(frame->exposure) &&
+	       isfinite(frame->gamma_encode) && frame->gamma_encode > 0;
+}
+
+int renderer_draw(struct renderer *renderer, const struct render_frame *frame)
+{
+	if (!renderer->params.wall_given)
+		return GR_ERR_STATE;
+	if (!frame_valid(frame))
+		return GR_ERR_RANGE;
+	return draw_frame(renderer, frame, NULL);
+}
+
+int renderer_draw_camera(struct renderer *renderer, const struct render_frame *frame,
+			 const struct scene_camera *camera)
+{
+	if (renderer->params.eyes != RENDERER_MONO)
+		return GR_ERR_STATE;
+	if (!frame_valid(frame))
+		return GR_ERR_RANGE;
+	return draw_frame(renderer, frame, camera);
+}
+
+int renderer_finished(struct renderer *renderer, int64_t wait_ns)
+{
+	if (!renderer->fence)
+		return GR_OK;
+	switch (glClientWaitSync(renderer->fence, GL_SYNC_FLUSH_COMMANDS_BIT,
+				 wait_ns > 0 ? (GLuint64)wait_ns : 0)) {
+	case GL_ALREADY_SIGNALED:
+	case GL_CONDITION_SATISFIED:
+		glDeleteSync(renderer->fence);
+		renderer->fence = NULL;
+		return GR_OK;
+	case GL_TIMEOUT_EXPIRED:
+		return GR_NOTHING;
+	default:
+		return GR_ERR_GL;
+	}
+}

@@ -1,0 +1,43 @@
+// Lamps without extent (struct lamp_record in renderer/view/blocks.h).
+struct Lamp {
+	vec4 position;  // scene, metres; w: radius of the source, metres
+	vec4 direction; // unit, where the light goes; w: 0 spot, 1 point, 2 directional
+	vec4 intensity; // rgb W/sr, directional W/m^2; 0 when off
+	vec4 cone;      // x: cos of the umbra's angle, y: cos of the penumbra's, z: 1/(y - x) or 0: hard
+	ivec4 maps;     // x: first layer of lamp_layers, y: layers, 1 or 6
+};
+
+layout(std430, binding = 3) readonly buffer Lamps {
+	ivec4 lamp_count; // x
+	Lamp lamps[];
+};
+
+// Seed 004 section 3.3.4 (Direct3D's spotlight): 1 inside, 0 outside the cone.
+float lamp_cone(Lamp lamp, vec3 to_lamp)
+{
+	float c = -dot(lamp.direction.xyz, to_lamp);
+
+	if (lamp.direction.w != 0.0)
+		return 1.0;
+	if (lamp.cone.z == 0.0)
+		return c > lamp.cone.x ? 1.0 : 0.0;
+	return clamp((c - lamp.cone.x) * lamp.cone.z, 0.0, 1.0);
+}
+
+// Irradiance on a plane through p that faces the lamp, W/m^2, nothing in
+// between but the medium. Out: unit vector to the lamp and the distance.
+vec3 lamp_irradiance(Lamp lamp, vec3 p, out vec3 to_lamp, out float metres)
+{
+	if (lamp.direction.w == 2.0) {
+		to_lamp = -lamp.direction.xyz;
+		metres = metres_to_bounds(p, to_lamp);
+		return lamp.intensity.rgb * medium_to_surface(metres);
+	}
+	vec3 d = lamp.position.xyz - p;
+
+	// A surface inside the source gets what the source's own surface has.
+	metres = max(length(d), max(lamp.position.w, 1e-3));
+	to_lamp = d / metres;
+	return lamp.intensity.rgb * (lamp_cone(lamp, to_lamp) * medium_to_surface(metres) /
+				     (metres * metres));
+}

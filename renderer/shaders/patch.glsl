@@ -1,0 +1,83 @@
+// Emissive surfaces as rectangles (struct patch_record in renderer/view/blocks.h).
+struct Patch {
+	vec4 centre;   // scene, metres; w: half the longer side
+	vec4 u;        // half side, metres; w: 1/|u|
+	vec4 v;        // half side, metres; w: 1/|v|
+	vec4 normal;   // unit, the side that emits; u x v is along it
+	vec4 origin;   // on the surface: where its shadows are seen from
+	vec4 radiance; // rgb W/(m^2 sr)
+	ivec4 maps;    // x: first of 5 layers of patch_layers
+};
+
+layout(std430, binding = 5) readonly buffer Patches {
+	ivec4 patch_count; // x
+	Patch patches[];
+};
+
+// Integral of an edge of a spherical polygon, z part: angle times unit normal.
+// theta / (2 pi sin(theta)) is the fit of Heitz, Dupuy, Hill and Neubelt (2016),
+// good to 2e-6.
+float patch_edge(vec3 a, vec3 b)
+{
+	float x = dot(a, b);
+	float y = abs(x);
+	float fit = (0.8543985 + (0.4965155 + 0.0145206 * y) * y) /
+		    (3.4175940 + (4.1616724 + y) * y);
+	float angle_over_sine = x > 0.0 ? fit : 0.5 * inversesqrt(max(1.0 - x * x, 1e-7)) - fit;
+
+	return (a.x * b.y - a.y * b.x) * angle_over_sine;
+}
+
+// Lambert's polygon formula: share of the cosine-weighted hemisphere over
+// (p, n) that the rectangle covers, 0..1; cut at the horizon.
+float patch_form_factor(Patch patch_, vec3 p, vec3 n)
+{
+	vec3 to = patch_.centre.xyz - p;
+
+	if (dot(to, patch_.normal.xyz) >= 0.0)
+		return 0.0; // behind it
+
+	vec3 helper = abs(n.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+	vec3 tx = normalize(cross(helper, n));
+	vec3 ty = cross(n, tx);
+	vec3 c = vec3(dot(to, tx), dot(to, ty), dot(to, n));
+	vec3 u = vec3(dot(patch_.u.xyz, tx), dot(patch_.u.xyz, ty), dot(patch_.u.xyz, n));
+	vec3 v = vec3(dot(patch_.v.xyz, tx), dot(patch_.v.xyz, ty), dot(patch_.v.xyz, n));
+	float reach = abs(u.z) + abs(v.z);
+
+	if (c.z + reach <= 0.0)
+		return 0.0;
+
+	vec3 corners[4] = vec3[4](c - u - v, c + u - v, c + u + v, c - u + v);
+	float sum = 0.0;
+
+	if (c.z - reach >= 0.0) {
+		vec3 a = normalize(corners[0]), b = normalize(corners[1]);
+		vec3 d = normalize(corners[2]), e = normalize(corners[3]);
+
+		sum = patch_edge(a, b) + patch_edge(b, d) + patch_edge(d, e) + patch_edge(e, a);
+	} else {
+		vec3 leaves = vec3(0.0), enters = vec3(0.0);
+		bool cut = false;
+
+		for (int i = 0; i < 4; i++) {
+			vec3 a = corners[i], b = corners[(i + 1) & 3];
+
+			if (a.z <= 0.0 && b.z <= 0.0)
+				continue;
+			if (a.z < 0.0) {
+				a = mix(a, b, a.z / (a.z - b.z));
+				enters = normalize(a);
+				cut = true;
+			} else if (b.z < 0.0) {
+				b = mix(a, b, a.z / (a.z - b.z));
+				leaves = normalize(b);
+				cut = true;
+			}
+			sum += patch_edge(normalize(a), normalize(b));
+		}
+		if (cut)
+			sum += patch_edge(leaves, enters);
+	}
+	return max(-sum, sum); // seen from its front the order of corners is known
+}

@@ -1,0 +1,60 @@
+/*
+ * The blocks that the view's shaders read, byte for byte (std140, std430),
+ * and where they are bound. Bindings 0 (materials) and from 8 on (global
+ * illumination) belong to others.
+ */
+#ifndef GROTTO_RENDERER_VIEW_BLOCKS_H
+#define GROTTO_RENDERER_VIEW_BLOCKS_H
+
+#include <stdint.h>
+
+enum view_binding {
+	VIEW_BINDING_FRAME = 1, /* uniform buffer; the others are storage buffers */
+	VIEW_BINDING_LAMPS = 3,
+	VIEW_BINDING_LAMP_LAYERS = 4,
+	VIEW_BINDING_PATCHES = 5,
+	VIEW_BINDING_PATCH_LAYERS = 6,
+	VIEW_BINDING_COUNTERS = 7,
+};
+
+enum view_unit {
+	VIEW_UNIT_GBUFFER = 0, /* five */
+	VIEW_UNIT_LAMP_COMPARE = 5,
+	VIEW_UNIT_LAMP_DEPTH = 6,
+	VIEW_UNIT_PATCH_COMPARE = 7,
+};
+
+/* Frame in shaders/medium.glsl. */
+struct frame_block {
+	float medium[4]; /* log2 transmittance per metre: extinction, absorption */
+	float bounds_min[4], bounds_max[4];
+	float background[4];
+};
+
+/* Lamp in shaders/lamp.glsl. */
+struct lamp_record {
+	float position[4];
+	float direction[4];
+	float intensity[4];
+	float cone[4];
+	int32_t maps[4];
+};
+
+/* MapLayer in shaders/shadow.glsl. */
+struct map_layer {
+	float clip[16];  /* scene to clip space, x and y -1..1, depth 1 (near) .. 0 (far) */
+	float extent[4]; /* half width at distance 1, or metres; pixels; 1 perspective */
+	float range[4];  /* near, far, metres */
+};
+
+/* Patch in shaders/patch.glsl. */
+struct patch_record {
+	float centre[4];
+	float u[4], v[4];
+	float normal[4];
+	float origin[4];
+	float radiance[4];
+	int32_t maps[4];
+};
+
+#endif
