@@ -8,13 +8,7 @@
 /* An eye this near a wall's plane has no picture. */
 #define EYE_NEAR_M 1e-3
 
-static bool wall_known(const struct layout_file_wall *wall)
-{
-	return wall->at && isfinite(wall->lower_left[0]) && isfinite(wall->lower_right[0]) &&
-	       isfinite(wall->upper_left[0]);
-}
-
-/* Metres from the wall's plane, positive in front of it; NaN for a wall without area. */
+/* Metres from the wall's plane, positive in front of it; NaN for no wall or one without area. */
 static double in_front(const struct layout_file_wall *wall, const double point[3])
 {
 	double a[3], b[3], n[3], length, distance = 0;
@@ -31,6 +25,13 @@ static double in_front(const struct layout_file_wall *wall, const double point[3
 	return distance;
 }
 
+static bool wall_known(const struct layout_file_wall *wall)
+{
+	static const double origin[3];
+
+	return wall->at && isfinite(in_front(wall, origin));
+}
+
 static void include(struct layout_file_room *room, const float point[3])
 {
 	for (int i = 0; i < 3; i++) {
@@ -39,11 +40,10 @@ static void include(struct layout_file_room *room, const float point[3])
 	}
 }
 
-/* The box around all corners of all walls, the fourth ones too. */
+/* The box around all corners of all walls, the fourth ones too; none when a wall is faulty. */
 static bool room_from_walls(struct options_reader *reader, struct layout_file *file)
 {
 	struct layout_file_room *room = &file->room;
-	bool any = false;
 
 	for (int i = 0; i < 3; i++) {
 		room->min[i] = INFINITY;
@@ -54,8 +54,7 @@ static bool room_from_walls(struct options_reader *reader, struct layout_file *f
 		float last[3];
 
 		if (!wall_known(wall))
-			continue;
-		any = true;
+			return false;
 		for (int i = 0; i < 3; i++)
 			last[i] = wall->lower_right[i] + wall->upper_left[i] - wall->lower_left[i];
 		include(room, wall->lower_left);
@@ -63,7 +62,7 @@ static bool room_from_walls(struct options_reader *reader, struct layout_file *f
 		include(room, wall->upper_left);
 		include(room, last);
 	}
-	for (int i = 0; any && i < 3; i++)
+	for (int i = 0; file->wall_count && i < 3; i++)
 		if (room->max[i] - room->min[i] < ROOM_THIN_M) {
 			options_fault(reader, GR_DIAG_ERROR, file->at, "room",
 				      "missing; the walls enclose %.2f m along %c, so say where eyes may be: "
@@ -71,7 +70,7 @@ static bool room_from_walls(struct options_reader *reader, struct layout_file *f
 				      (double)(room->max[i] - room->min[i]), "xyz"[i]);
 			return false;
 		}
-	return any;
+	return file->wall_count > 0;
 }
 
 static bool room_given(struct options_reader *reader, struct layout_file *file)

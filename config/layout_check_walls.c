@@ -6,15 +6,21 @@
 
 static const char *const corner_keys[3] = { "lower_left", "lower_right", "upper_left" };
 
+/* Radians in a float miss a right angle by up to 2e-7: a floor at -90 degrees is to be level. */
+static double snap(double value)
+{
+	return fabs(value) < 2e-7 ? 0 : value;
+}
+
 /*
  * Corners of a wall given by centre, size and orientation. A person who faces
  * it looks along Ry(heading) Rx(pitch) (0, 0, -1); roll turns about that line.
  */
 static void corners_from_center(struct layout_file_wall *wall)
 {
-	double ch = cos(wall->heading), sh = sin(wall->heading);
-	double cp = cos(wall->pitch), sp = sin(wall->pitch);
-	double cr = cos(wall->roll), sr = sin(wall->roll);
+	double ch = snap(cos(wall->heading)), sh = snap(sin(wall->heading));
+	double cp = snap(cos(wall->pitch)), sp = snap(sin(wall->pitch));
+	double cr = snap(cos(wall->roll)), sr = snap(sin(wall->roll));
 	/* First two columns of Ry Rx: the wall's right and up before the roll. */
 	double x[3] = { ch, 0, -sh }, y[3] = { sh * sp, cp, ch * sp };
 

@@ -70,6 +70,8 @@ int layout_write(FILE *file, const struct layout *layout)
 	for (size_t i = 0; i < layout->tracker_count; i++) {
 		trackers[i].tracker = layout->trackers[i];
 		trackers[i].sim.sim = layout->trackers[i].sim;
+		if (layout->trackers[i].kind != LAYOUT_TRACKER_SIM)
+			trackers[i].sim.sim.rate_hz = NAN;
 	}
 	options_write(file, layout_options, &form);
 	result = fflush(file) || ferror(file) ? GR_ERR_IO : GR_OK;

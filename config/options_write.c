@@ -162,9 +162,8 @@ static void write_table(FILE *file, const struct option *table, const void *base
 
 		if (absent(option, at))
 			continue;
-		/* A group whose first value is absent is absent: only `room` of a layout is. */
-		if (option->type == OPTION_GROUP && option->group->required &&
-		    absent(option->group, at + option->group->offset))
+		/* A group whose first value is absent is absent. */
+		if (option->type == OPTION_GROUP && absent(option->group, at + option->group->offset))
 			continue;
 		indent(file, depth);
 		fprintf(file, "%s = ", option->key);
