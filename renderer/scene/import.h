@@ -31,7 +31,8 @@
 #define IMPORT_LAMBERT_ROUGHNESS 0.999f
 
 struct import_options {
-	float scale;
+	float scale;          /* metres per unit of the model */
+	float emission_scale; /* W/(m^2 sr) of emission 1 */
 	bool double_sided;
 };
 /* Diffuse reflectance of a glTF mesh without a material. */

@@ -213,8 +213,9 @@ static int map_material(struct import *import, const struct aiMaterial *from,
 		snprintf(out->name, sizeof out->name, "material %td", out - import->scene->materials);
 	out->diffuse_image = out->emission_image = -1;
 	get_color(from, AI_MATKEY_COLOR_EMISSIVE, out->emission);
-	for (int i = 0; i < 3 && gltf; i++)
-		out->emission[i] *= gltf->emissive_strength;
+	for (int i = 0; i < 3; i++)
+		out->emission[i] *= import->options->emission_scale *
+				    (gltf ? gltf->emissive_strength : 1.0f);
 	get_int(from, AI_MATKEY_TWOSIDED, &two_sided);
 	out->two_sided = two_sided || import->options->double_sided;
 	result = get_texture(import, from, diffuse, 2, true, &out->diffuse_image);

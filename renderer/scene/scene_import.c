@@ -9,6 +9,7 @@ int scene_import(const struct scene_file *file, struct scene **out, struct gr_di
 {
 	const struct import_options options = {
 		.scale = file->model_scale,
+		.emission_scale = file->emission_scale,
 		.double_sided = file->double_sided,
 	};
 	char *path = scene_file_model_path(file);
