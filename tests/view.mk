@@ -4,3 +4,14 @@ TESTS += tests/unit/test_projection
 tests_unit_test_projection_SOURCES = tests/unit/test_projection.c tests/unit/unit.h
 tests_unit_test_projection_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_projection_LDADD = renderer/libgrenderer.a $(BASE_LIBS) $(CMOCKA_LIBS) -lm
+
+# the others draw, and skip (77) where there is no OpenGL 4.5
+VIEW_TEST_CFLAGS = $(TEST_CFLAGS) $(EPOXY_CFLAGS) $(OPENEXR_CFLAGS) $(PNG_CFLAGS)
+VIEW_TEST_LIBS = $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm
+
+check_PROGRAMS += tests/accuracy/test_direct
+TESTS += tests/accuracy/test_direct
+tests_accuracy_test_direct_SOURCES = tests/accuracy/test_direct.c tests/accuracy/cornell.h \
+	tests/unit/unit.h tests/unit/gl.h
+tests_accuracy_test_direct_CFLAGS = $(VIEW_TEST_CFLAGS)
+tests_accuracy_test_direct_LDADD = $(VIEW_TEST_LIBS)
