@@ -13,3 +13,9 @@ tests_unit_test_target_LDADD = $(GL_TEST_LIBS)
 tests_unit_test_program_SOURCES = tests/unit/test_program.c tests/unit/unit.h tests/unit/gl.h
 tests_unit_test_program_CFLAGS = $(GL_TEST_CFLAGS)
 tests_unit_test_program_LDADD = $(GL_TEST_LIBS)
+
+check_PROGRAMS += tests/unit/test_image
+TESTS += tests/unit/test_image
+tests_unit_test_image_SOURCES = tests/unit/test_image.c tests/unit/unit.h tests/unit/shared.h
+tests_unit_test_image_CFLAGS = $(GL_TEST_CFLAGS)
+tests_unit_test_image_LDADD = $(GL_TEST_LIBS)

@@ -5,7 +5,9 @@ RENDERER_SOURCES += \
 	renderer/gl/target.c renderer/gl/target.h renderer/gl/target_egl.c \
 	renderer/gl/target_glfw.c renderer/gl/target_private.h \
 	renderer/gl/timer.c renderer/gl/timer.h \
-	renderer/image/image.h \
+	renderer/image/exr_private.h renderer/image/exr_read.c renderer/image/exr_write.c \
+	renderer/image/image.c renderer/image/image.h renderer/image/png.c \
+	renderer/image/read_file.c renderer/image/read_file.h \
 	renderer/scene/gltf.c renderer/scene/import.c renderer/scene/import.h \
 	renderer/scene/import_geometry.c renderer/scene/import_image.c \
 	renderer/scene/import_material.c renderer/scene/scene.c renderer/scene/scene.h \

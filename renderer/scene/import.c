@@ -6,6 +6,7 @@
 #include "renderer/scene/import.h"
 
 #include "base/result.h"
+#include "renderer/image/read_file.h"
 
 #include <assimp/cimport.h>
 #include <assimp/config.h>
@@ -190,7 +191,7 @@ int import_model(const char *path, const struct import_options *options, struct 
 {
 	uint8_t *bytes;
 	size_t len;
-	int result = import_read_file(path, IMPORT_MAX_FILE, &bytes, &len, diag, "model");
+	int result = read_file(path, IMPORT_MAX_FILE, &bytes, &len, diag, "model");
 
 	*out = NULL;
 	if (result != GR_OK)

@@ -97,8 +97,4 @@ int import_image(struct import *import, const char *name, bool srgb, int *out_in
 int texture_decode(const uint8_t *bytes, size_t len, const char *what, struct scene_image *out,
 		   struct gr_diag *diag, const char *path);
 
-/* Whole file, bounded. GR_ERR_CONFIG with a line in diag (`what` begins it). */
-int import_read_file(const char *path, size_t most, uint8_t **out, size_t *out_len,
-		     struct gr_diag *diag, const char *what);
-
 #endif
