@@ -1,0 +1,419 @@
+#include "daemon/master.h"
+
+#include "base/result.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <sodium.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define RECEIVE_MOST 256 /* then timers and other descriptors have their turn */
+#define LIGHT_RESTART_NS GR_NS_PER_S /* a slow node may not make the others start over more often */
+
+static const char *node_name(const struct master *m, int node)
+{
+	return node >= 0 && (size_t)node < m->params.layout->node_count ?
+		       m->params.layout->nodes[node].name : "?";
+}
+
+/* Nodes that a datagram to all is for; those that are gone get none. */
+static uint64_t present_nodes(const struct master *m)
+{
+	uint64_t bits = 0;
+
+	for (size_t i = 0; i < m->params.layout->node_count; i++) {
+		struct fdp_peer_status peer;
+		fdp_master_peer(m->fdp, i, &peer);
+		if (peer.state == FDP_PEER_JOINING || peer.state == FDP_PEER_LIVE ||
+		    peer.state == FDP_PEER_LATE)
+			bits |= UINT64_C(1) << i;
+	}
+	return bits;
+}
+
+static uint64_t barrier_nodes(const struct master *m)
+{
+	uint64_t bits = 0;
+
+	for (size_t i = 0; i < m->params.layout->node_count; i++) {
+		struct fdp_peer_status peer;
+		fdp_master_peer(m->fdp, i, &peer);
+		if (peer.state == FDP_PEER_LIVE || peer.state == FDP_PEER_LATE)
+			bits |= UINT64_C(1) << i;
+	}
+	return bits;
+}
+
+static void send_datagram(void *ctx, int to, const uint8_t *bytes, size_t len)
+{
+	struct master *m = ctx;
+
+	/* During create there is no state to ask yet, and nothing to send to. */
+	if (m->fdp)
+		net_send(m->net, to, to == FDP_TO_ALL ? present_nodes(m) : 0, bytes, len);
+}
+
+static void node_gone(struct master *m, int node)
+{
+	m->behind &= ~(UINT64_C(1) << node);
+	frame_stats_gone(&m->stats, (unsigned)node);
+}
+
+static void node_refused(struct master *m, const struct fdp_master_event *event, int64_t now_ns)
+{
+	struct gr_log_limit *limit = &m->refused_limit[event->node < 0 ? 0 : event->node % FDP_MAX_NODES];
+	uint64_t times;
+
+	m->refused++;
+	if (gr_log_limit(limit, now_ns, &times))
+		gr_error("node %s may not join: %s", node_name(m, event->node),
+			 event->reason ? event->reason : "no reason given");
+}
+
+static void node_mismatch(struct master *m, const struct fdp_master_event *event, int64_t now_ns)
+{
+	uint64_t times;
+
+	if (gr_log_limit(&m->mismatch_limit, now_ns, &times))
+		gr_error("node %s holds another state at frame %" PRIu64 ": ours %016" PRIx64
+			 ", its %016" PRIx64 "; it gets a snapshot (%" PRIu64 " since the last line)",
+			 node_name(m, event->node), event->frame, event->ours, event->theirs, times);
+}
+
+static void on_event(void *ctx, const struct fdp_master_event *event)
+{
+	struct master *m = ctx;
+	int64_t now_ns = gr_clock_now(&gr_clock_monotonic);
+	uint64_t times;
+
+	switch (event->kind) {
+	case FDP_MASTER_JOINED:
+		m->joined++;
+		m->restart_light = true;
+		gr_notice("node %s joined; %zu of %zu live", node_name(m, event->node),
+			  fdp_master_live(m->fdp), m->params.layout->node_count);
+		break;
+	case FDP_MASTER_LEFT:
+		node_gone(m, event->node);
+		gr_notice("node %s left", node_name(m, event->node));
+		break;
+	case FDP_MASTER_REFUSED: node_refused(m, event, now_ns); break;
+	case FDP_MASTER_LATE:
+		m->late++;
+		m->behind |= UINT64_C(1) << event->node;
+		if (gr_log_limit(&m->late_limit, now_ns, &times))
+			gr_warning("node %s was late for frame %" PRIu64 " (%" PRIu64 " since the last line)",
+				   node_name(m, event->node), event->frame, times);
+		break;
+	case FDP_MASTER_EVICTED:
+		m->evicted++;
+		node_gone(m, event->node);
+		gr_error("node %s is gone: it missed %d frames in a row; the room goes on without it",
+			 node_name(m, event->node), m->params.layout->rates.evict_frames);
+		break;
+	case FDP_MASTER_MISMATCH: node_mismatch(m, event, now_ns); break;
+	case FDP_MASTER_SWAP:
+		frame_stats_swap_sent(&m->stats, event->frame, now_ns);
+		notify_feed(&m->notify, now_ns);
+		break;
+	}
+}
+
+/*
+ * A node that missed frames did fewer propagation steps than the others; once
+ * it keeps up again, all start from the steady state of the same frame.
+ */
+static void look_for_caught_up(struct master *m, int64_t now_ns)
+{
+	uint64_t caught_up = 0;
+
+	for (int i = 0; m->behind >> i && i < FDP_MAX_NODES; i++) {
+		struct fdp_peer_status peer;
+		if (!(m->behind >> i & 1))
+			continue;
+		fdp_master_peer(m->fdp, (size_t)i, &peer);
+		if (peer.state == FDP_PEER_LIVE && peer.ready == m->frame)
+			caught_up |= UINT64_C(1) << i;
+	}
+	if (caught_up && now_ns - m->light_restart_ns > LIGHT_RESTART_NS) {
+		m->behind &= ~caught_up;
+		m->restart_light = true;
+	}
+}
+
+/* The frame's time on the master's scale. */
+static int64_t frame_time(const struct master *m, uint64_t frame, int64_t now_ns)
+{
+	if (!m->params.frame_clock)
+		return now_ns - m->start_ns;
+	return llrint((double)frame * 1e9 / (double)m->params.layout->rates.frame_hz);
+}
+
+static void begin_frame(struct master *m, int64_t now_ns)
+{
+	uint64_t frame = m->frame + 1, times;
+	int64_t time_ns = frame_time(m, frame, now_ns);
+	int64_t to_swap_ns = m->params.frame_clock || m->stats.smoothed_swap_ns == 0 ?
+				     m->period_ns : m->stats.smoothed_swap_ns;
+	const char *refused = NULL;
+	int r;
+
+	look_for_caught_up(m, now_ns);
+	trackers_poll(m->trackers, time_ns);
+	trackers_sample(m->trackers,
+			time_ns + to_swap_ns + m->params.layout->rates.display_latency_ns, &m->input);
+	m->input.step_ns = m->frame == 0 ? 0 : time_ns - m->last_time_ns;
+	m->input.time_ns = m->last_time_ns = time_ns;
+	if (m->restart_light)
+		m->light_restart_ns = now_ns;
+	r = master_state_frame(&m->scene_state, &m->input, m->restart_light, m->state, frame,
+			       &refused);
+	if (r < 0 && gr_log_limit(&m->range_limit, now_ns, &times))
+		gr_warning("frame %" PRIu64 ": %s is outside its range and keeps its value (%" PRIu64
+			   " since the last line)", frame, refused, times);
+	m->restart_light = false;
+	m->frame = frame;
+	r = fdp_master_begin(m->fdp, m->state, frame, now_ns);
+	frame_stats_begin(&m->stats, frame, barrier_nodes(m), now_ns);
+	net_flush(m->net);
+	if (r < 0) {
+		gr_error("frame %" PRIu64 " cannot begin: %s", frame, gr_result_name(r));
+		loop_stop(m->loop);
+	}
+	/* On the grid of the period; frames whose time is past are not made up for. */
+	m->next_frame_ns += m->period_ns;
+	if (m->next_frame_ns < now_ns)
+		m->next_frame_ns = now_ns;
+}
+
+static bool may_begin(struct master *m)
+{
+	size_t live = fdp_master_live(m->fdp);
+
+	if (!fdp_master_idle(m->fdp) || m->finish_ns != 0 || live == 0)
+		return false;
+	if (!m->started && live < m->params.expect)
+		return false;
+	if (!m->started)
+		gr_notice("%zu of %zu nodes are there: frames begin", live,
+			  m->params.layout->node_count);
+	m->started = true;
+	return true;
+}
+
+/* Begins to end once the last frame has swapped: waits a little for the reports of it. */
+static void look_for_end(struct master *m, int64_t now_ns)
+{
+	if (m->params.frames == 0 || m->frame < m->params.frames || !fdp_master_idle(m->fdp))
+		return;
+	if (m->finish_ns == 0)
+		m->finish_ns = now_ns + m->params.layout->rates.barrier_deadline_ns + GR_NS_PER_S;
+	if (frame_stats_settled(&m->stats, m->frame) || now_ns >= m->finish_ns)
+		loop_stop(m->loop);
+}
+
+/* After everything that may have changed the protocol's state. */
+static void advance(struct master *m)
+{
+	int64_t now_ns = gr_clock_now(&gr_clock_monotonic), frame_ns = LOOP_NEVER;
+
+	net_flush(m->net);
+	look_for_end(m, now_ns);
+	if (may_begin(m)) {
+		if (m->params.frame_clock || now_ns >= m->next_frame_ns)
+			begin_frame(m, now_ns);
+		else
+			frame_ns = m->next_frame_ns;
+	}
+	if (m->finish_ns != 0)
+		frame_ns = m->finish_ns;
+	loop_timer_set(m->loop, m->frame_timer, frame_ns);
+	loop_timer_set(m->loop, m->tick_timer, fdp_master_next(m->fdp));
+}
+
+static void bad_datagram(struct master *m, int result, const struct net_address *from,
+			 int64_t now_ns)
+{
+	struct gr_log_limit *limit = &m->bad[-result < MASTER_REASONS ? -result : 0];
+	char text[NET_ADDRESS_TEXT];
+	uint64_t times;
+
+	if (!gr_log_limit(limit, now_ns, &times))
+		return;
+	net_address_text(from, text);
+	gr_warning("dropped a datagram from %s: %s (%" PRIu64 " such since the last line, %" PRIu64
+		   " in all)", text, gr_result_name(result), times, limit->total);
+}
+
+static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
+			const struct net_address *from)
+{
+	struct master *m = ctx;
+	int64_t now_ns = gr_clock_now(&gr_clock_monotonic);
+	struct fdp_peer_status peer;
+	int node = fdp_master_receive(m->fdp, bytes, len, now_ns);
+
+	if (node < 0) {
+		bad_datagram(m, node, from, now_ns);
+		return;
+	}
+	net_learn(m->net, node, from);
+	fdp_master_peer(m->fdp, (size_t)node, &peer);
+	if (peer.swapped_frame != 0)
+		frame_stats_swapped(&m->stats, (unsigned)node, peer.swapped_frame,
+				    peer.swap_local_ns, now_ns);
+}
+
+static void on_readable(void *ctx, uint32_t events)
+{
+	struct master *m = ctx;
+	int fds[2];
+
+	(void)events;
+	net_fds(m->net, fds);
+	net_receive(m->net, fds[0], RECEIVE_MOST, on_datagram, m);
+	advance(m);
+}
+
+static void on_tick(void *ctx, int64_t now_ns)
+{
+	struct master *m = ctx;
+
+	fdp_master_tick(m->fdp, now_ns);
+	advance(m);
+}
+
+static void on_frame_time(void *ctx, int64_t now_ns)
+{
+	(void)now_ns;
+	advance(ctx);
+}
+
+static void log_send_failures(struct master *m, int64_t now_ns)
+{
+	struct net_stats stats;
+	uint64_t times;
+
+	net_stats(m->net, &stats);
+	if (stats.send_failed == m->seen_send_failed)
+		return;
+	m->seen_send_failed = stats.send_failed;
+	if (gr_log_limit(&m->send_limit, now_ns, &times))
+		gr_warning("%" PRIu64 " datagrams could not be sent; the last: %s", stats.send_failed,
+			   strerror(stats.send_errno));
+}
+
+static void on_second(void *ctx, int64_t now_ns)
+{
+	struct master *m = ctx;
+	size_t live = fdp_master_live(m->fdp), all = m->params.layout->node_count;
+
+	/* Waiting for nodes is healthy; a room that has them must show frames. */
+	if (live == 0 || !m->started)
+		notify_feed(&m->notify, now_ns);
+	if (m->frame == m->logged_frame)
+		notify_status("waiting for nodes: %zu of %zu live", live, all);
+	else
+		notify_status("frame %" PRIu64 ", %" PRIu64 " in the last second, %zu of %zu nodes",
+			      m->frame, m->frame - m->logged_frame, live, all);
+	m->logged_frame = m->frame;
+	log_send_failures(m, now_ns);
+	loop_timer_set(m->loop, m->second_timer, now_ns + GR_NS_PER_S);
+	advance(m);
+}
+
+static int create_protocol(struct master *m)
+{
+	const struct layout *layout = m->params.layout;
+	const char *names[LAYOUT_MAX_NODES];
+	struct fdp_master_params params = {
+		.session = m->session,
+		.node_names = names,
+		.node_count = layout->node_count,
+		.datagram_max = net_datagram_max(&layout->network),
+		.deadline_ns = layout->rates.barrier_deadline_ns,
+		.evict_frames = (unsigned)layout->rates.evict_frames,
+		.multicast = layout->network.cast != LAYOUT_UNICAST,
+	};
+	struct fdp_master_ops ops = { send_datagram, on_event, m };
+	int r;
+
+	for (size_t i = 0; i < layout->node_count; i++)
+		names[i] = layout->nodes[i].name;
+	memcpy(params.key, m->params.key, sizeof params.key);
+	memcpy(params.layout_hash, layout->hash, sizeof params.layout_hash);
+	memcpy(params.scene_hash, m->params.content_hash, sizeof params.scene_hash);
+	r = fdp_master_create(&m->fdp, &params, &ops);
+	sodium_memzero(params.key, sizeof params.key);
+	return r;
+}
+
+int master_create(struct master **out, struct loop *loop, struct net *net,
+		  struct trackers *trackers, const struct master_params *params)
+{
+	struct master *m = calloc(1, sizeof *m);
+	int fds[2], r;
+
+	*out = NULL;
+	if (!m)
+		return GR_ERR_NOMEM;
+	m->params = *params;
+	m->loop = loop;
+	m->net = net;
+	m->trackers = trackers;
+	m->period_ns = llrint(1e9 / (double)params->layout->rates.frame_hz);
+	do
+		randombytes_buf(&m->session, sizeof m->session);
+	while (m->session == 0);
+	notify_init(&m->notify);
+	master_state_init(&m->scene_state, params->layout, params->scene);
+	master_state_start_input(&m->scene_state, &m->input);
+	r = param_state_create(&m->state);
+	if (r >= 0)
+		r = create_protocol(m);
+	if (r >= 0)
+		r = m->tick_timer = loop_timer_create(loop, on_tick, m);
+	if (r >= 0)
+		r = m->frame_timer = loop_timer_create(loop, on_frame_time, m);
+	if (r >= 0)
+		r = m->second_timer = loop_timer_create(loop, on_second, m);
+	net_fds(net, fds);
+	if (r >= 0)
+		r = loop_add(loop, fds[0], EPOLLIN, on_readable, m);
+	if (r < 0) {
+		gr_error("the master cannot start: %s", gr_result_name(r));
+		master_destroy(&m);
+		return r;
+	}
+	m->start_ns = m->next_frame_ns = gr_clock_now(&gr_clock_monotonic);
+	on_second(m, m->start_ns);
+	*out = m;
+	return GR_OK;
+}
+
+void master_leave(struct master *master)
+{
+	if (master->left)
+		return;
+	master->left = true;
+	fdp_master_leave(master->fdp, gr_clock_now(&gr_clock_monotonic));
+	net_flush(master->net);
+}
+
+void master_destroy(struct master **master)
+{
+	struct master *m = *master;
+	int fds[2];
+
+	if (!m)
+		return;
+	net_fds(m->net, fds);
+	loop_remove(m->loop, fds[0]);
+	fdp_master_destroy(&m->fdp);
+	param_state_destroy(m->state);
+	sodium_memzero(m->params.key, sizeof m->params.key);
+	free(m);
+	*master = NULL;
+}

@@ -1,0 +1,81 @@
+/*
+ * The room in operation: frames, barrier, trackers, statistics. Opening and
+ * loading is master_main.c's; here is what happens from then on, driven by
+ * the loop. No allocation after master_create.
+ *
+ * A frame begins when its time has come, the frame before has swapped, and
+ * enough nodes are there. Real clock: frame times are multiples of the frame
+ * period after the start. Frame clock: frame N stands at N / frame_hz seconds
+ * whatever the real time, and begins as soon as it may; what is shown is then
+ * a function of N alone.
+ */
+#ifndef GROTTO_DAEMON_MASTER_H
+#define GROTTO_DAEMON_MASTER_H
+
+#include "daemon/frame_stats.h"
+#include "daemon/loop.h"
+#include "daemon/master_state.h"
+#include "daemon/notify.h"
+#include "daemon/socket.h"
+#include "daemon/trackers.h"
+#include "protocol/master.h"
+
+#include "base/log.h"
+
+#define MASTER_REASONS 16 /* negative results, for the limits of log lines */
+
+struct master_params {
+	const struct layout *layout;
+	const struct scene_file *scene;
+	uint8_t content_hash[32];
+	uint8_t key[FDP_KEY_BYTES];
+	uint64_t frames; /* end after so many; 0: for ever */
+	unsigned expect; /* nodes that must be live before the first frame, at least 1 */
+	bool frame_clock;
+};
+
+struct master {
+	struct master_params params;
+	struct loop *loop;
+	struct net *net;
+	struct trackers *trackers;
+	struct fdp_master *fdp;
+	struct param_state *state;
+	struct master_state scene_state;
+	struct master_input input;
+	struct notify notify;
+	struct frame_stats stats;
+
+	uint64_t session, frame; /* frame: the last begun */
+	int64_t start_ns, next_frame_ns, last_time_ns;
+	int64_t period_ns;
+	bool started;       /* `expect` nodes were there */
+	bool restart_light; /* at the next frame */
+	int64_t light_restart_ns; /* when it was last */
+	uint64_t behind;    /* nodes that missed a barrier and have not caught up */
+	int64_t finish_ns;  /* no longer waits for reports than this; 0: not finishing */
+	bool left;
+
+	int tick_timer, frame_timer, second_timer;
+	uint64_t late, evicted, refused, joined;
+	uint64_t logged_frame;
+	struct gr_log_limit bad[MASTER_REASONS], refused_limit[FDP_MAX_NODES], range_limit, late_limit;
+	struct gr_log_limit mismatch_limit, send_limit;
+	uint64_t seen_send_failed;
+};
+
+/* net and trackers are borrowed; the loop too. On failure the log says why. */
+int master_create(struct master **out, struct loop *loop, struct net *net,
+		  struct trackers *trackers, const struct master_params *params);
+/* Says LEAVE to the nodes, once. */
+void master_leave(struct master *master);
+void master_destroy(struct master **master);
+
+/* Answers of the control socket; see daemon/control.h. */
+void master_answer(void *ctx, char *const *words, int count, char *answer, size_t size);
+
+/* The status document and the report at the end: one JSON object. GR_OK or GR_ERR_RANGE (too small). */
+int master_write_json(const struct master *master, int64_t now_ns, char *text, size_t size,
+		      size_t *out_len);
+
+#endif

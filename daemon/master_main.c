@@ -1,0 +1,161 @@
+/*
+ * grotto-master: reads and checks everything, opens ports and trackers, gives
+ * up privileges, says READY, and runs the room until it is told to end.
+ */
+#include "base/clock.h"
+#include "base/log.h"
+#include "base/result.h"
+#include "daemon/control.h"
+#include "daemon/json.h"
+#include "daemon/master.h"
+#include "daemon/options.h"
+#include "daemon/privileges.h"
+#include "daemon/room_files.h"
+
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct opened {
+	struct room_files files;
+	struct trackers trackers;
+	struct loop *loop;
+	struct net *net;
+	struct master *master;
+	struct control *control;
+};
+
+static int load(struct opened *o, const struct master_options *options)
+{
+	struct gr_diag diag = { 0 };
+	int r = room_files_load(&o->files, &options->common);
+
+	if (r < 0)
+		return r;
+	/* Only the hash of the model is needed from here on. */
+	scene_destroy(&o->files.scene);
+	r = trackers_open(&o->trackers, o->files.layout, &diag);
+	gr_diag_log(&diag);
+	gr_diag_finish(&diag);
+	return r;
+}
+
+static void fill_params(struct master_params *params, const struct opened *o,
+			const struct master_options *options)
+{
+	*params = (struct master_params){
+		.layout = o->files.layout,
+		.scene = o->files.scene_file,
+		.frames = (uint64_t)options->frames,
+		.expect = options->wait_all ? (unsigned)o->files.layout->node_count :
+					      (unsigned)options->expect,
+		.frame_clock = options->frame_clock,
+	};
+	memcpy(params->content_hash, o->files.content_hash, sizeof params->content_hash);
+	memcpy(params->key, o->files.key, sizeof params->key);
+}
+
+static const char *control_path(const struct opened *o, const struct master_options *options)
+{
+	const char *path = options->control ? options->control : o->files.layout->control_socket;
+
+	return path && strcmp(path, "none") ? path : NULL;
+}
+
+static int open_all(struct opened *o, const struct master_options *options)
+{
+	struct master_params params;
+	const char *path = control_path(o, options);
+	int r = net_open_master(&o->net, o->files.layout);
+
+	if (r < 0)
+		return r;
+	fill_params(&params, o, options);
+	r = master_create(&o->master, o->loop, o->net, &o->trackers, &params);
+	if (r >= 0 && path)
+		r = control_create(&o->control, o->loop, path, master_answer, o->master);
+	if (r >= 0)
+		r = privileges_drop(options->common.user, path);
+	return r;
+}
+
+static int run(struct opened *o)
+{
+	const struct layout *layout = o->files.layout;
+
+	notify_ready("waiting for %zu nodes", layout->node_count);
+	gr_notice("room '%s', scene '%s': %zu nodes, port %u, %g frames a second", layout->name,
+		  o->files.scene_file->name, layout->node_count, layout->network.master_port,
+		  (double)layout->rates.frame_hz);
+	while (!loop_stopped(o->loop)) {
+		if (loop_once(o->loop, -1) < 0) {
+			gr_error("the event loop failed");
+			return GR_EXIT_RUNTIME;
+		}
+	}
+	if (loop_signal(o->loop))
+		gr_notice("ends: %s", strsignal(loop_signal(o->loop)));
+	return GR_EXIT_OK;
+}
+
+static int report(const struct master *master, const char *path)
+{
+	char *text = malloc(CONTROL_ANSWER_MAX);
+	size_t len;
+	int r = text ? master_write_json(master, gr_clock_now(&gr_clock_monotonic), text,
+					 CONTROL_ANSWER_MAX, &len) : GR_ERR_NOMEM;
+
+	if (r >= 0)
+		r = json_save(path, text, len);
+	free(text);
+	return r < 0 ? GR_EXIT_RUNTIME : GR_EXIT_OK;
+}
+
+static void close_all(struct opened *o)
+{
+	control_destroy(&o->control);
+	master_destroy(&o->master);
+	net_close(&o->net);
+	trackers_close(&o->trackers);
+	room_files_finish(&o->files);
+	loop_destroy(&o->loop);
+}
+
+int main(int argc, char **argv)
+{
+	struct master_options options;
+	struct opened o = { 0 };
+	int r, status = GR_EXIT_CONFIG;
+
+	gr_log_init("grotto-master", GR_LOG_INFO);
+	switch (master_options_parse(&options, argc, argv)) {
+	case OPTIONS_RUN: break;
+	case OPTIONS_DONE: return GR_EXIT_OK;
+	case OPTIONS_WRONG: return GR_EXIT_CONFIG;
+	}
+	gr_log_set_level((enum gr_log_level)options.common.log_level);
+	r = load(&o, &options);
+	if (r < 0) {
+		status = room_files_exit(r);
+		goto out;
+	}
+	status = GR_EXIT_RUNTIME;
+	/* From here on a signal ends the room in order; before, it just ends the process. */
+	if (loop_create(&o.loop) < 0 || loop_catch_signals(o.loop) < 0) {
+		gr_error("no event loop");
+		goto out;
+	}
+	r = open_all(&o, &options);
+	if (r < 0) {
+		status = r == GR_ERR_CONFIG ? GR_EXIT_CONFIG : GR_EXIT_RUNTIME;
+		goto out;
+	}
+	status = run(&o);
+	notify_stopping();
+	master_leave(o.master);
+	if (options.common.report && report(o.master, options.common.report) != GR_EXIT_OK)
+		status = GR_EXIT_RUNTIME;
+out:
+	close_all(&o);
+	return status;
+}

@@ -1,0 +1,190 @@
+#include "daemon/master.h"
+
+#include "base/result.h"
+#include "daemon/control.h"
+#include "daemon/json.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+static void write_histogram(struct json *json, const char *key, const struct histogram *histogram)
+{
+	json_open(json, key, '{');
+	json_u64(json, "count", histogram->count);
+	json_f64(json, "p50", histogram_percentile(histogram, 0.5));
+	json_f64(json, "p99", histogram_percentile(histogram, 0.99));
+	json_i64(json, "max", histogram->max_us);
+	json_close(json, '}');
+}
+
+static void write_node(struct json *json, const struct master *m, size_t i, int64_t now_ns)
+{
+	const struct layout_node *node = &m->params.layout->nodes[i];
+	struct fdp_peer_status peer;
+
+	fdp_master_peer(m->fdp, i, &peer);
+	json_open(json, NULL, '{');
+	json_string(json, "name", node->name);
+	json_string(json, "wall", m->params.layout->walls[node->wall].name);
+	json_string(json, "state", fdp_peer_state_name(peer.state));
+	json_u64(json, "acked", peer.acked);
+	json_u64(json, "ready", peer.ready);
+	json_u64(json, "swapped", peer.swapped);
+	json_u64(json, "missed", peer.missed);
+	json_u64(json, "mismatches", peer.mismatches);
+	json_u64(json, "swapped_frame", peer.swapped_frame);
+	json_f64(json, "ready_after_ms", (double)peer.ready_after_ns * 1e-6);
+	json_f64(json, "render_ms", (double)peer.render_us * 1e-3);
+	if (peer.last_heard_ns > 0)
+		json_f64(json, "heard_ms_ago", (double)(now_ns - peer.last_heard_ns) * 1e-6);
+	json_close(json, '}');
+}
+
+static void write_wire(struct json *json, const struct master *m)
+{
+	struct fdp_counters c;
+	struct net_stats net;
+
+	fdp_master_counters(m->fdp, &c);
+	net_stats(m->net, &net);
+	json_open(json, "wire", '{');
+	json_u64(json, "bytes_out", c.bytes_out);
+	json_u64(json, "bytes_in", c.bytes_in);
+	json_u64(json, "datagrams_out", c.datagrams_out);
+	json_u64(json, "datagrams_in", c.datagrams_in);
+	json_u64(json, "repairs", c.repairs);
+	json_u64(json, "packed", c.packed);
+	json_u64(json, "send_failed", net.send_failed);
+	json_open(json, "bad", '{');
+	json_u64(json, "short", c.bad_short);
+	json_u64(json, "version", c.bad_version);
+	json_u64(json, "auth", c.bad_auth);
+	json_u64(json, "session", c.bad_session);
+	json_u64(json, "format", c.bad_format);
+	json_u64(json, "replay", c.bad_replay);
+	json_u64(json, "oversized", net.oversized);
+	json_close(json, '}');
+	json_close(json, '}');
+}
+
+static void write_frames(struct json *json, const struct master *m)
+{
+	json_u64(json, "frame", m->frame);
+	json_u64(json, "frames", m->stats.begun);
+	json_u64(json, "frames_complete", m->stats.complete);
+	json_u64(json, "frames_incomplete", m->stats.incomplete);
+	json_hash(json, "state_hash", fdp_master_hash(m->fdp));
+	json_u64(json, "joined", m->joined);
+	json_u64(json, "late", m->late);
+	json_u64(json, "evicted", m->evicted);
+	json_u64(json, "refused", m->refused);
+	write_histogram(json, "skew_us", &m->stats.skew);
+	write_histogram(json, "commit_to_swap_sent_us", &m->stats.swap_sent);
+	write_histogram(json, "commit_to_last_swap_us", &m->stats.last_swapped);
+}
+
+static void write_tracking(struct json *json, const struct master *m)
+{
+	const struct gr_pose *head = &m->input.head.T_room_body;
+
+	json_open(json, "tracking", '{');
+	json_bool(json, "head_tracked", m->input.head.tracked);
+	json_bool(json, "wand_tracked", m->input.wand.tracked);
+	json_u64(json, "dropped", m->trackers->history.dropped);
+	json_open(json, "head_m", '[');
+	for (int i = 0; i < 3; i++)
+		json_f64(json, NULL, (double)head->p[i]);
+	json_close(json, ']');
+	json_close(json, '}');
+}
+
+static void write_settings(struct json *json, const struct master *m)
+{
+	const struct master_settings *s = &m->scene_state.settings;
+
+	json_open(json, "settings", '{');
+	json_u64(json, "gi_on", s->gi_on);
+	json_u64(json, "gi_steps", s->gi_steps);
+	json_f64(json, "gi_incremental", (double)s->gi_incremental);
+	json_f64(json, "absorption", (double)s->absorption);
+	json_f64(json, "scattering", (double)s->scattering);
+	json_f64(json, "exposure", (double)s->exposure);
+	json_u64(json, "tone_curve", s->tone_curve);
+	json_f64(json, "gamma_encode", (double)s->gamma_encode);
+	json_f64(json, "eye_separation", (double)s->eye_separation);
+	json_open(json, "lamps", '{');
+	for (size_t i = 0; i < m->params.scene->lamp_count && i < PARAM_MAX_LAMPS; i++)
+		json_bool(json, m->params.scene->lamps[i].name, s->lamp_on >> i & 1);
+	json_close(json, '}');
+	json_close(json, '}');
+}
+
+int master_write_json(const struct master *m, int64_t now_ns, char *text, size_t size,
+		      size_t *out_len)
+{
+	struct json json = json_start(text, size);
+
+	json_open(&json, NULL, '{');
+	json_bool(&json, "ok", true);
+	json_string(&json, "layout", m->params.layout->name);
+	json_string(&json, "scene", m->params.scene->name);
+	json_hash(&json, "session", m->session);
+	json_f64(&json, "uptime_s", (double)(now_ns - m->start_ns) * 1e-9);
+	json_f64(&json, "frame_hz", (double)m->params.layout->rates.frame_hz);
+	json_bool(&json, "frame_clock", m->params.frame_clock);
+	json_bool(&json, "running", m->started && fdp_master_live(m->fdp) > 0);
+	write_frames(&json, m);
+	json_open(&json, "nodes", '[');
+	for (size_t i = 0; i < m->params.layout->node_count; i++)
+		write_node(&json, m, i, now_ns);
+	json_close(&json, ']');
+	write_wire(&json, m);
+	write_tracking(&json, m);
+	write_settings(&json, m);
+	json_close(&json, '}');
+	*out_len = json.len;
+	return json.ok ? GR_OK : GR_ERR_RANGE;
+}
+
+static void answer_ok(char *answer, size_t size)
+{
+	snprintf(answer, size, "{\"ok\":true}");
+}
+
+static void answer_set(struct master *m, char *const *words, int count, char *answer, size_t size)
+{
+	char why[400];
+
+	if (count < 2) {
+		control_refuse(answer, size, "write: set NAME VALUE...");
+		return;
+	}
+	if (master_settings_set(&m->scene_state.settings, m->params.scene, words + 1, count - 1, why,
+				sizeof why) < 0) {
+		control_refuse(answer, size, "%s", why);
+		return;
+	}
+	gr_info("control: %s was set", words[1]);
+	answer_ok(answer, size);
+}
+
+void master_answer(void *ctx, char *const *words, int count, char *answer, size_t size)
+{
+	struct master *m = ctx;
+	size_t len;
+
+	if (!strcmp(words[0], "status") && count == 1) {
+		if (master_write_json(m, gr_clock_now(&gr_clock_monotonic), answer, size, &len) < 0)
+			control_refuse(answer, size, "the answer is longer than %zu bytes", size);
+	} else if (!strcmp(words[0], "set")) {
+		answer_set(m, words, count, answer, size);
+	} else if (!strcmp(words[0], "quit") && count == 1) {
+		gr_notice("control: asked to end");
+		answer_ok(answer, size);
+		loop_stop(m->loop);
+	} else {
+		control_refuse(answer, size, "no request '%.40s'; there are status, set NAME VALUE..., quit",
+			       words[0]);
+	}
+}

@@ -1,0 +1,385 @@
+#include "daemon/node.h"
+
+#include "base/result.h"
+#include "daemon/node_frame.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <sodium.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define RECEIVE_MOST 256
+#define GPU_SLICE_NS GR_NS_PER_MS /* the longest that the socket waits for the GPU */
+
+static void send_datagram(void *ctx, const uint8_t *bytes, size_t len)
+{
+	struct node *n = ctx;
+
+	net_send(n->net, 0, 0, bytes, len);
+}
+
+static void apply_frame(struct node *n, uint64_t frame, int64_t now_ns)
+{
+	const char *refused = NULL;
+	uint64_t times;
+
+	n->counts.applied++;
+	if (n->wanted != 0)
+		n->counts.dropped++;
+	n->wanted = 0;
+	n->master_gone = false;
+	if (node_frame_fill(&n->next_frame, n->params.scene_file, fdp_node_params_state(n->fdp),
+			    frame, &refused) < 0) {
+		n->counts.invalid++;
+		if (gr_log_limit(&n->invalid_limit, now_ns, &times))
+			gr_error("frame %" PRIu64 " is not drawn: %s makes no sense (%" PRIu64
+				 " such since the last line)", frame, refused, times);
+		return;
+	}
+	n->wanted = frame;
+	n->wanted_ns = now_ns;
+}
+
+/* The swap itself comes first and alone; what it entails waits for receive to return. */
+static void swap(struct node *n, uint64_t frame)
+{
+	if (n->ready == 0 || frame != n->ready)
+		return; /* not ready in time, or told twice */
+	if (n->picture && !target_swap(n->target)) {
+		gr_notice("the window was closed");
+		loop_stop(n->loop);
+	}
+	n->swap_ns = gr_clock_now(&gr_clock_monotonic);
+	n->swapped = n->report = frame;
+	n->ready = 0;
+	n->counts.swapped++;
+}
+
+static void refused(struct node *n, const char *reason, int64_t now_ns)
+{
+	uint64_t times;
+
+	n->counts.refused++;
+	if (gr_log_limit(&n->refused_limit, now_ns, &times))
+		gr_error("the master refuses this node: %s", reason ? reason : "no reason given");
+	if (n->params.once) {
+		n->status = GR_EXIT_CONFIG;
+		loop_stop(n->loop);
+	}
+}
+
+static void on_event(void *ctx, const struct fdp_node_event *event)
+{
+	struct node *n = ctx;
+	int64_t now_ns = gr_clock_now(&gr_clock_monotonic);
+	uint64_t times;
+
+	switch (event->kind) {
+	case FDP_NODE_JOINED:
+		n->counts.joined++;
+		n->master_gone = false;
+		gr_notice("joined the master");
+		break;
+	case FDP_NODE_FRAME: apply_frame(n, event->frame, now_ns); break;
+	case FDP_NODE_SWAP: swap(n, event->frame); break;
+	case FDP_NODE_REFUSED: refused(n, event->reason, now_ns); break;
+	case FDP_NODE_LOST:
+		n->counts.lost++;
+		n->master_gone = true;
+		gr_warning("nothing is heard from the master: the last picture stays, asking to join again");
+		break;
+	case FDP_NODE_MASTER_LEFT:
+		n->master_gone = true;
+		gr_notice("the master left%s", n->params.once ? "" : ": waiting for the next");
+		if (n->params.once)
+			loop_stop(n->loop);
+		break;
+	case FDP_NODE_MISMATCH:
+		n->counts.mismatches++;
+		if (gr_log_limit(&n->mismatch_limit, now_ns, &times))
+			gr_error("state of frame %" PRIu64 " differs: the master's %016" PRIx64
+				 ", ours %016" PRIx64 "; asked for a snapshot (%" PRIu64
+				 " since the last line)", event->frame, event->theirs, event->ours, times);
+		break;
+	}
+}
+
+static void bad_datagram(struct node *n, int result, const struct net_address *from,
+			 int64_t now_ns)
+{
+	struct gr_log_limit *limit = &n->bad[-result < NODE_REASONS ? -result : 0];
+	char text[NET_ADDRESS_TEXT];
+	uint64_t times;
+
+	if (!gr_log_limit(limit, now_ns, &times))
+		return;
+	net_address_text(from, text);
+	gr_warning("dropped a datagram from %s: %s (%" PRIu64 " such since the last line, %" PRIu64
+		   " in all)", text, gr_result_name(result), times, limit->total);
+}
+
+static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
+			const struct net_address *from)
+{
+	struct node *n = ctx;
+	int64_t now_ns = gr_clock_now(&gr_clock_monotonic);
+	int r = fdp_node_receive(n->fdp, bytes, len, now_ns);
+
+	if (r < 0)
+		bad_datagram(n, r, from, now_ns);
+}
+
+/* Sends what is due; answers leave before any drawing begins. */
+static void serve_protocol(struct node *n)
+{
+	if (n->swap_ns != 0) {
+		fdp_node_swapped(n->fdp, n->report, n->swap_ns, gr_clock_now(&gr_clock_monotonic));
+		n->swap_ns = 0;
+		notify_feed(&n->notify, gr_clock_now(&gr_clock_monotonic));
+	}
+	net_flush(n->net);
+	loop_timer_set(n->loop, n->tick_timer, fdp_node_next(n->fdp));
+}
+
+static void receive(struct node *n, int which)
+{
+	int fds[2];
+
+	net_fds(n->net, fds);
+	net_receive(n->net, fds[which], RECEIVE_MOST, on_datagram, n);
+	serve_protocol(n);
+}
+
+static void on_readable(void *ctx, uint32_t events)
+{
+	(void)events;
+	receive(ctx, 0);
+}
+
+static void on_group_readable(void *ctx, uint32_t events)
+{
+	(void)events;
+	receive(ctx, 1);
+}
+
+static void on_tick(void *ctx, int64_t now_ns)
+{
+	struct node *n = ctx;
+
+	fdp_node_tick(n->fdp, now_ns);
+	serve_protocol(n);
+}
+
+static void log_send_failures(struct node *n, int64_t now_ns)
+{
+	struct net_stats stats;
+	uint64_t times;
+
+	net_stats(n->net, &stats);
+	if (stats.send_failed == n->seen_send_failed)
+		return;
+	n->seen_send_failed = stats.send_failed;
+	if (gr_log_limit(&n->send_limit, now_ns, &times))
+		gr_warning("%" PRIu64 " datagrams could not be sent; the last: %s", stats.send_failed,
+			   strerror(stats.send_errno));
+}
+
+static void on_second(void *ctx, int64_t now_ns)
+{
+	struct node *n = ctx;
+	enum fdp_node_state state = fdp_node_status(n->fdp);
+
+	/* Waiting for a master, or for its next frame, is healthy; a frame that is not done is not. */
+	if (n->wanted == 0 && n->drawing == 0)
+		notify_feed(&n->notify, now_ns);
+	if (state == FDP_NODE_LIVE)
+		notify_status("frame %" PRIu64 ", %" PRIu64 " swapped in the last second", n->swapped,
+			      n->counts.swapped - n->logged_swapped);
+	else
+		notify_status("%s", fdp_node_state_name(state));
+	n->logged_swapped = n->counts.swapped;
+	log_send_failures(n, now_ns);
+	loop_timer_set(n->loop, n->second_timer, now_ns + GR_NS_PER_S);
+}
+
+static bool picture_due(const struct node *n, uint64_t frame)
+{
+	return n->pictures && frame != 0 && frame != n->saved && n->params.every > 0 &&
+	       frame % n->params.every == 0;
+}
+
+static void save_picture(struct node *n, uint64_t frame)
+{
+	if (pictures_save(n->pictures, n->renderer, frame) >= 0)
+		n->saved = frame;
+}
+
+static void start_drawing(struct node *n)
+{
+	int r;
+
+	n->frame = n->next_frame;
+	n->drawing = n->wanted;
+	n->drawing_ns = n->wanted_ns;
+	n->wanted = n->ready = n->drawn = 0;
+	r = renderer_draw(n->renderer, &n->frame);
+	if (r < 0) {
+		gr_error("frame %" PRIu64 " cannot be drawn: %s", n->drawing, gr_result_name(r));
+		n->status = GR_EXIT_RUNTIME;
+		loop_stop(n->loop);
+	}
+	n->picture = r == GR_OK;
+}
+
+static void finish_drawing(struct node *n)
+{
+	int r = renderer_finished(n->renderer, GPU_SLICE_NS);
+	int64_t now_ns = gr_clock_now(&gr_clock_monotonic);
+	uint64_t frame = n->drawing;
+
+	if (r == GR_NOTHING)
+		return;
+	if (r < 0) {
+		gr_error("the GPU is lost: %s", gr_result_name(r));
+		n->status = GR_EXIT_RUNTIME;
+		loop_stop(n->loop);
+		return;
+	}
+	n->drawing = 0;
+	n->drawn = frame;
+	n->counts.drawn++;
+	if (n->wanted != 0) {
+		n->counts.dropped++;
+		return;
+	}
+	n->ready = frame;
+	fdp_node_ready(n->fdp, frame, (uint32_t)((now_ns - n->drawing_ns) / GR_NS_PER_US), now_ns);
+	serve_protocol(n);
+}
+
+static void work(struct node *n)
+{
+	/* A picture that is to be saved must be read before the next is drawn over it. */
+	if (n->drawing == 0 && n->drawn != 0 && n->drawn == n->swapped && picture_due(n, n->drawn))
+		save_picture(n, n->drawn);
+	if (n->drawing == 0 && n->wanted != 0)
+		start_drawing(n);
+	else if (n->drawing != 0)
+		finish_drawing(n);
+}
+
+int node_run(struct node *node)
+{
+	while (!loop_stopped(node->loop)) {
+		/* Everything that has arrived is taken first: only the newest frame is drawn. */
+		bool busy = node->drawing != 0 || node->wanted != 0;
+		int r = loop_once(node->loop, busy ? 0 : -1);
+
+		if (r < 0) {
+			gr_error("the event loop failed");
+			return GR_EXIT_RUNTIME;
+		}
+		if (!loop_stopped(node->loop))
+			work(node);
+	}
+	if (loop_signal(node->loop))
+		gr_notice("ends: %s", strsignal(loop_signal(node->loop)));
+	return node->status;
+}
+
+static int create_protocol(struct node *n)
+{
+	const struct layout *layout = n->params.layout;
+	struct fdp_node_params params = {
+		.index = (uint16_t)n->params.index,
+		.name = layout->nodes[n->params.index].name,
+		.datagram_max = net_datagram_max(&layout->network),
+		/* A room that waits for a slow node is silent for as long as the barrier's deadline. */
+		.silence_ns = 2 * layout->rates.barrier_deadline_ns + 2 * GR_NS_PER_S,
+	};
+	struct fdp_node_ops ops = { send_datagram, on_event, n };
+	int r;
+
+	memcpy(params.key, n->params.key, sizeof params.key);
+	memcpy(params.layout_hash, layout->hash, sizeof params.layout_hash);
+	memcpy(params.scene_hash, n->params.content_hash, sizeof params.scene_hash);
+	r = fdp_node_create(&n->fdp, &params, &ops);
+	sodium_memzero(params.key, sizeof params.key);
+	return r;
+}
+
+static int join_loop(struct node *n)
+{
+	int fds[2], count, r;
+
+	r = n->tick_timer = loop_timer_create(n->loop, on_tick, n);
+	if (r >= 0)
+		r = n->second_timer = loop_timer_create(n->loop, on_second, n);
+	count = net_fds(n->net, fds);
+	if (r >= 0)
+		r = loop_add(n->loop, fds[0], EPOLLIN, on_readable, n);
+	if (r >= 0 && count > 1)
+		r = loop_add(n->loop, fds[1], EPOLLIN, on_group_readable, n);
+	return r;
+}
+
+int node_create(struct node **out, struct loop *loop, struct net *net, struct target *target,
+		struct renderer *renderer, struct pictures *pictures,
+		const struct node_params *params)
+{
+	struct node *n = calloc(1, sizeof *n);
+	int64_t now_ns = gr_clock_now(&gr_clock_monotonic);
+	int r;
+
+	*out = NULL;
+	if (!n)
+		return GR_ERR_NOMEM;
+	n->params = *params;
+	n->loop = loop;
+	n->net = net;
+	n->target = target;
+	n->renderer = renderer;
+	n->pictures = pictures;
+	render_frame_init(&n->next_frame, params->scene_file);
+	notify_init(&n->notify);
+	r = create_protocol(n);
+	if (r >= 0)
+		r = join_loop(n);
+	if (r < 0) {
+		gr_error("the node cannot start: %s", gr_result_name(r));
+		node_destroy(&n);
+		return r;
+	}
+	on_second(n, now_ns);
+	on_tick(n, now_ns);
+	*out = n;
+	return GR_OK;
+}
+
+void node_leave(struct node *node)
+{
+	if (!node->master_gone) {
+		fdp_node_leave(node->fdp, gr_clock_now(&gr_clock_monotonic));
+		net_flush(node->net);
+	}
+	if (node->pictures && node->drawn != 0 && node->drawn == node->swapped &&
+	    node->drawn != node->saved)
+		save_picture(node, node->drawn);
+}
+
+void node_destroy(struct node **node)
+{
+	struct node *n = *node;
+	int fds[2], count;
+
+	if (!n)
+		return;
+	count = net_fds(n->net, fds);
+	for (int i = 0; i < count; i++)
+		loop_remove(n->loop, fds[i]);
+	fdp_node_destroy(&n->fdp);
+	sodium_memzero(n->params.key, sizeof n->params.key);
+	free(n);
+	*node = NULL;
+}

@@ -1,0 +1,85 @@
+/*
+ * One wall in operation: receive the state, draw, say READY, swap when told.
+ * Opening and loading is node_main.c's.
+ *
+ * One thread does all: it owns the GL context, and serves the socket between
+ * short waits for the GPU. The states of a picture: wanted (its state is
+ * applied) -> drawing (submitted) -> ready (the GPU has finished, READY is
+ * sent) -> swapped. A newer frame replaces a wanted one; a frame that is
+ * being drawn is finished first, and is not reported when a newer one waits.
+ *
+ * Without a master the last picture stays and the node asks to join, for ever.
+ * No allocation after node_create but for saved pictures.
+ */
+#ifndef GROTTO_DAEMON_NODE_H
+#define GROTTO_DAEMON_NODE_H
+
+#include "base/log.h"
+#include "daemon/loop.h"
+#include "daemon/notify.h"
+#include "daemon/pictures.h"
+#include "daemon/socket.h"
+#include "protocol/node.h"
+#include "renderer/renderer.h"
+
+#define NODE_REASONS 16
+
+struct node_params {
+	const struct layout *layout;
+	size_t index; /* of this node */
+	const struct scene_file *scene_file;
+	uint8_t content_hash[32];
+	uint8_t key[FDP_KEY_BYTES];
+	bool once;      /* end when the master ends or refuses */
+	uint64_t every; /* save pictures of frames that this divides; 0: the last alone */
+};
+
+struct node_counts {
+	uint64_t applied, drawn, swapped;
+	uint64_t dropped; /* applied, but a newer frame came before it was ready */
+	uint64_t invalid; /* applied, but not drawable: values that make no sense together */
+	uint64_t mismatches, joined, lost, refused;
+};
+
+struct node {
+	struct node_params params;
+	struct loop *loop;
+	struct net *net;
+	struct target *target;
+	struct renderer *renderer;
+	struct pictures *pictures; /* NULL: none are saved */
+	struct fdp_node *fdp;
+	struct notify notify;
+	struct render_frame next_frame, frame; /* what is wanted; what is or was drawn */
+	struct node_counts counts;
+
+	/* Frame numbers, 0 for none. drawn: whose picture the target holds. */
+	uint64_t wanted, drawing, drawn, ready, swapped, saved;
+	bool picture;             /* the drawn frame has one (its eyes see the wall) */
+	int64_t wanted_ns, drawing_ns; /* when the state of that frame was applied */
+	int64_t swap_ns;          /* of a swap that is not yet reported; 0: none */
+	uint64_t report;          /* frame of that swap */
+	bool master_gone;         /* left, refused, or lost: nothing will come */
+	int status;               /* enum gr_exit, when the loop stops */
+
+	int tick_timer, second_timer;
+	uint64_t logged_swapped;
+	struct gr_log_limit bad[NODE_REASONS], refused_limit, invalid_limit, mismatch_limit, send_limit;
+	uint64_t seen_send_failed;
+};
+
+/* All but params is borrowed. On failure the log says why. */
+int node_create(struct node **out, struct loop *loop, struct net *net, struct target *target,
+		struct renderer *renderer, struct pictures *pictures,
+		const struct node_params *params);
+/* Serves until the loop is stopped; enum gr_exit. */
+int node_run(struct node *node);
+/* LEAVE, and the last picture. */
+void node_leave(struct node *node);
+void node_destroy(struct node **node);
+
+/* The report at the end: one JSON object. Reads the light field back. */
+int node_write_json(const struct node *node, uint64_t pictures_saved, char *text, size_t size,
+		    size_t *out_len);
+
+#endif

@@ -1,0 +1,250 @@
+/*
+ * grotto-node: reads and checks everything, opens its port and the GPU, gives
+ * up privileges, says READY, and draws its wall until it is told to end.
+ */
+#include "base/clock.h"
+#include "base/log.h"
+#include "base/result.h"
+#include "daemon/json.h"
+#include "daemon/node.h"
+#include "daemon/options.h"
+#include "daemon/privileges.h"
+#include "daemon/room_files.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define REPORT_MAX 65536
+#define WARM_UP_NS (60 * GR_NS_PER_S)
+
+struct opened {
+	struct room_files files;
+	size_t index;
+	struct loop *loop;
+	struct net *net;
+	struct target *target;
+	struct renderer *renderer;
+	struct pictures *pictures;
+	struct node *node;
+};
+
+static int find_node(struct opened *o, const char *name)
+{
+	const struct layout *layout = o->files.layout;
+	char names[1024] = "";
+	size_t len = 0;
+	int i = layout_find_node(layout, name);
+
+	if (i >= 0) {
+		o->index = (size_t)i;
+		return GR_OK;
+	}
+	for (size_t k = 0; k < layout->node_count && len < sizeof names; k++)
+		len += (size_t)snprintf(names + len, sizeof names - len, "%s%s", k ? ", " : "",
+					layout->nodes[k].name);
+	gr_error("--node %s: %s has no such node; it has %s", name, layout->path, names);
+	return GR_ERR_CONFIG;
+}
+
+static enum renderer_eyes eyes_of(enum layout_eyes eyes)
+{
+	switch (eyes) {
+	case LAYOUT_EYES_MONO: return RENDERER_MONO;
+	case LAYOUT_EYES_QUAD_BUFFER: return RENDERER_QUAD_BUFFER;
+	case LAYOUT_EYES_SIDE_BY_SIDE: return RENDERER_SIDE_BY_SIDE;
+	case LAYOUT_EYES_TOP_BOTTOM: return RENDERER_TOP_BOTTOM;
+	case LAYOUT_EYES_LEFT: return RENDERER_LEFT;
+	case LAYOUT_EYES_RIGHT: return RENDERER_RIGHT;
+	}
+	return RENDERER_MONO;
+}
+
+static void fill_renderer(struct renderer_params *params, const struct opened *o,
+			  const struct node_options *options)
+{
+	const struct layout *layout = o->files.layout;
+	int pixels[2];
+
+	layout_node_pixels(layout, o->index, pixels);
+	*params = (struct renderer_params){
+		.width = pixels[0],
+		.height = pixels[1],
+		.eyes = eyes_of(layout->nodes[o->index].eyes),
+		.wall_given = true,
+		.keep_radiance = options->pictures && options->exr,
+	};
+	layout_node_corners(layout, o->index, params->wall.lower_left, params->wall.lower_right,
+			    params->wall.upper_left);
+}
+
+static enum target_kind kind_of(const struct layout_node *node, int choice)
+{
+	switch ((enum node_target_choice)choice) {
+	case NODE_TARGET_HEADLESS: return TARGET_HEADLESS;
+	case NODE_TARGET_WINDOW: return TARGET_WINDOW;
+	case NODE_TARGET_FULLSCREEN: return TARGET_FULLSCREEN;
+	case NODE_TARGET_LAYOUT: break;
+	}
+	switch (node->target) {
+	case LAYOUT_TARGET_HEADLESS: return TARGET_HEADLESS;
+	case LAYOUT_TARGET_WINDOW: return TARGET_WINDOW;
+	case LAYOUT_TARGET_FULLSCREEN: return TARGET_FULLSCREEN;
+	}
+	return TARGET_HEADLESS;
+}
+
+static int open_target(struct opened *o, const struct node_options *options,
+		       const struct renderer_params *renderer)
+{
+	const struct layout_node *node = &o->files.layout->nodes[o->index];
+	struct target_params params = {
+		.kind = kind_of(node, options->target),
+		.title = node->name,
+		.display = options->display ? options->display : node->display,
+		.gpu = options->gpu >= -1 ? options->gpu : node->gpu,
+		.monitor = node->monitor,
+		.quad_buffer = renderer->eyes == RENDERER_QUAD_BUFFER,
+		.debug = gr_log_enabled(GR_LOG_DEBUG),
+	};
+	int r;
+
+	renderer_target_size(renderer, &params.width, &params.height);
+	r = target_create(&o->target, &params);
+	if (r >= 0)
+		gr_notice("draws with %s (%s), %d x %d pixels", target_renderer_name(o->target),
+			  target_platform_name(o->target), params.width, params.height);
+	return r;
+}
+
+/*
+ * Drivers finish compiling at the first draw, which can take longer than a
+ * barrier waits: so the first draw happens before the node joins.
+ */
+static int warm_up(struct opened *o)
+{
+	struct render_frame frame;
+	int r;
+
+	render_frame_init(&frame, o->files.scene_file);
+	frame.T_room_head = o->files.layout->start_head;
+	frame.eye_separation_m = o->files.layout->eye_separation_m;
+	r = renderer_draw(o->renderer, &frame);
+	return r < 0 ? r : renderer_finished(o->renderer, WARM_UP_NS);
+}
+
+static int open_pictures(struct opened *o, const struct node_options *options,
+			 const struct renderer_params *renderer)
+{
+	struct pictures_params params = { .dir = options->pictures, .name = options->node };
+
+	if (!options->pictures)
+		return GR_OK;
+	target_size(o->target, &params.width, &params.height);
+	if (options->exr)
+		params.radiance_eyes = renderer->eyes == RENDERER_QUAD_BUFFER ||
+				       renderer->eyes == RENDERER_SIDE_BY_SIDE ||
+				       renderer->eyes == RENDERER_TOP_BOTTOM ? 2 : 1;
+	return pictures_create(&o->pictures, &params);
+}
+
+static int open_all(struct opened *o, const struct node_options *options)
+{
+	struct renderer_params renderer;
+	struct node_params params = {
+		.layout = o->files.layout,
+		.index = o->index,
+		.scene_file = o->files.scene_file,
+		.once = options->once,
+		.every = (uint64_t)options->every,
+	};
+	int r = net_open_node(&o->net, o->files.layout, o->index);
+
+	if (r < 0)
+		return r;
+	fill_renderer(&renderer, o, options);
+	r = open_target(o, options, &renderer);
+	if (r >= 0)
+		r = renderer_create(&o->renderer, o->target, &renderer, o->files.scene_file,
+				    o->files.scene);
+	if (r >= 0)
+		r = warm_up(o);
+	if (r >= 0)
+		r = open_pictures(o, options, &renderer);
+	if (r >= 0)
+		r = privileges_drop(options->common.user, options->pictures);
+	if (r < 0)
+		return r;
+	memcpy(params.content_hash, o->files.content_hash, sizeof params.content_hash);
+	memcpy(params.key, o->files.key, sizeof params.key);
+	return node_create(&o->node, o->loop, o->net, o->target, o->renderer, o->pictures, &params);
+}
+
+static int finish(struct opened *o, const char *report, int status)
+{
+	char *text;
+	uint64_t saved = 0;
+	size_t len;
+
+	notify_stopping();
+	node_leave(o->node);
+	if (o->pictures && pictures_finish(o->pictures, &saved) < 0)
+		status = GR_EXIT_RUNTIME;
+	if (!report)
+		return status;
+	text = malloc(REPORT_MAX);
+	if (!text || node_write_json(o->node, saved, text, REPORT_MAX, &len) < 0 ||
+	    json_save(report, text, len) < 0)
+		status = GR_EXIT_RUNTIME;
+	free(text);
+	return status;
+}
+
+static void close_all(struct opened *o)
+{
+	node_destroy(&o->node);
+	pictures_destroy(&o->pictures);
+	renderer_destroy(&o->renderer);
+	target_destroy(&o->target);
+	net_close(&o->net);
+	room_files_finish(&o->files);
+	loop_destroy(&o->loop);
+}
+
+int main(int argc, char **argv)
+{
+	struct node_options options;
+	struct opened o = { 0 };
+	int r, status = GR_EXIT_CONFIG;
+
+	gr_log_init("grotto-node", GR_LOG_INFO);
+	switch (node_options_parse(&options, argc, argv)) {
+	case OPTIONS_RUN: break;
+	case OPTIONS_DONE: return GR_EXIT_OK;
+	case OPTIONS_WRONG: return GR_EXIT_CONFIG;
+	}
+	gr_log_init(options.node, (enum gr_log_level)options.common.log_level);
+	r = room_files_load(&o.files, &options.common);
+	if (r >= 0)
+		r = find_node(&o, options.node);
+	if (r < 0) {
+		status = room_files_exit(r);
+		goto out;
+	}
+	status = GR_EXIT_RUNTIME;
+	/* Before the GL driver starts threads of its own, which must not take the signals. */
+	if (loop_create(&o.loop) < 0 || loop_catch_signals(o.loop) < 0) {
+		gr_error("no event loop");
+		goto out;
+	}
+	r = open_all(&o, &options);
+	if (r < 0) {
+		status = r == GR_ERR_CONFIG ? GR_EXIT_CONFIG : GR_EXIT_RUNTIME;
+		goto out;
+	}
+	notify_ready("waiting for the master");
+	status = finish(&o, options.common.report, node_run(o.node));
+out:
+	close_all(&o);
+	return status;
+}

@@ -1,0 +1,92 @@
+#include "daemon/node.h"
+
+#include "base/result.h"
+#include "daemon/json.h"
+
+static void write_wire(struct json *json, const struct node *n)
+{
+	struct fdp_counters c;
+	struct net_stats net;
+
+	fdp_node_counters(n->fdp, &c);
+	net_stats(n->net, &net);
+	json_open(json, "wire", '{');
+	json_u64(json, "bytes_out", c.bytes_out);
+	json_u64(json, "bytes_in", c.bytes_in);
+	json_u64(json, "datagrams_out", c.datagrams_out);
+	json_u64(json, "datagrams_in", c.datagrams_in);
+	json_u64(json, "repairs", c.repairs);
+	json_u64(json, "send_failed", net.send_failed);
+	json_u64(json, "bad", c.bad_short + c.bad_version + c.bad_auth + c.bad_session +
+				     c.bad_format + c.bad_replay + net.oversized);
+	json_close(json, '}');
+}
+
+static void write_stages(struct json *json, const struct node *n)
+{
+	struct timers *timers = renderer_timers(n->renderer);
+
+	json_open(json, "stages", '[');
+	for (int i = 0; timers && i < TIMER_STAGES; i++) {
+		struct timer_stats stats;
+		timers_stats(timers, i, &stats);
+		if (!stats.name)
+			continue;
+		json_open(json, NULL, '{');
+		json_string(json, "name", stats.name);
+		json_u64(json, "count", stats.count);
+		json_f64(json, "mean_ms", stats.mean_ms);
+		json_f64(json, "min_ms", stats.min_ms);
+		json_f64(json, "max_ms", stats.max_ms);
+		json_f64(json, "last_ms", stats.last_ms);
+		json_close(json, '}');
+	}
+	json_close(json, ']');
+}
+
+static void write_renderer(struct json *json, const struct node *n)
+{
+	struct renderer_stats stats;
+	int width, height;
+
+	renderer_stats(n->renderer, &stats);
+	target_size(n->target, &width, &height);
+	json_string(json, "renderer", target_renderer_name(n->target));
+	json_string(json, "platform", target_platform_name(n->target));
+	json_i64(json, "width", width);
+	json_i64(json, "height", height);
+	json_u64(json, "shadow_updates", stats.shadow_updates);
+	json_u64(json, "gi_updates", stats.gi_updates);
+	json_u64(json, "skipped_eyes", stats.skipped_eyes);
+	json_u64(json, "gl_errors", stats.gl_errors);
+	json_u64(json, "nonfinite", stats.nonfinite);
+	json_hash(json, "light_hash", renderer_light_hash(n->renderer));
+	write_stages(json, n);
+}
+
+int node_write_json(const struct node *n, uint64_t pictures_saved, char *text, size_t size,
+		    size_t *out_len)
+{
+	struct json json = json_start(text, size);
+	const struct node_counts *c = &n->counts;
+
+	json_open(&json, NULL, '{');
+	json_string(&json, "node", n->params.layout->nodes[n->params.index].name);
+	json_u64(&json, "applied", c->applied);
+	json_u64(&json, "drawn", c->drawn);
+	json_u64(&json, "swapped", c->swapped);
+	json_u64(&json, "dropped", c->dropped);
+	json_u64(&json, "invalid", c->invalid);
+	json_u64(&json, "mismatches", c->mismatches);
+	json_u64(&json, "joined", c->joined);
+	json_u64(&json, "lost", c->lost);
+	json_u64(&json, "refused", c->refused);
+	json_u64(&json, "last_frame", n->swapped);
+	json_u64(&json, "pictures", pictures_saved);
+	json_hash(&json, "state_hash", fdp_node_hash(n->fdp));
+	write_renderer(&json, n);
+	write_wire(&json, n);
+	json_close(&json, '}');
+	*out_len = json.len;
+	return json.ok ? GR_OK : GR_ERR_RANGE;
+}

@@ -1,0 +1,35 @@
+/*
+ * What both daemons read before they open anything: layout, scene file,
+ * model, key. Everything wrong is said, each fault with file and line.
+ */
+#ifndef GROTTO_DAEMON_ROOM_FILES_H
+#define GROTTO_DAEMON_ROOM_FILES_H
+
+#include "config/layout.h"
+#include "config/scene_file.h"
+#include "daemon/options.h"
+#include "protocol/key.h"
+#include "renderer/scene/scene.h"
+
+struct room_files {
+	struct layout *layout;
+	struct scene_file *scene_file;
+	struct scene *scene;
+	uint8_t key[FDP_KEY_BYTES];
+	uint8_t content_hash[32]; /* scene file and model, compared at join */
+};
+
+/*
+ * GR_OK or a negative result after logging. A deadline given on the command
+ * line replaces the layout's (the layout's hash stays that of the file).
+ */
+int room_files_load(struct room_files *out, const struct common_options *options);
+void room_files_finish(struct room_files *files);
+
+/* What a failed load means to the one who started the daemon: enum gr_exit. */
+int room_files_exit(int result);
+
+/* `path` as seen from the file `beside`: itself when absolute. Caller frees; NULL without memory. */
+char *room_files_beside(const char *beside, const char *path);
+
+#endif

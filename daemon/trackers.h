@@ -1,0 +1,37 @@
+/*
+ * The layout's trackers behind one question: where are head and wand at the
+ * time at which the frame's light leaves the walls.
+ *
+ * Times are of the master's own scale: 0 when it started (or frame numbers
+ * over the frame rate, with the frame clock), so that a simulated or replayed
+ * visitor begins at the beginning. Nothing is allocated after opening.
+ */
+#ifndef GROTTO_DAEMON_TRACKERS_H
+#define GROTTO_DAEMON_TRACKERS_H
+
+#include "config/layout.h"
+#include "daemon/master_state.h"
+#include "tracking/source.h"
+
+#define TRACKERS_MAX 8
+#define TRACKERS_AHEAD_NS (100 * INT64_C(1000000)) /* poses are extrapolated at most this far */
+#define TRACKERS_STALE_NS (500 * INT64_C(1000000)) /* older than this: not tracked */
+
+struct trackers {
+	const struct layout *layout;
+	struct track_source *sources[TRACKERS_MAX];
+	const struct layout_tracker *of[TRACKERS_MAX];
+	size_t count;
+	struct track_history history;
+};
+
+/* Faults go to diag. The layout must outlive the trackers. */
+int trackers_open(struct trackers *out, const struct layout *layout, struct gr_diag *diag);
+void trackers_close(struct trackers *trackers);
+/* Takes what the devices have at now_ns. Never blocks. */
+void trackers_poll(struct trackers *trackers, int64_t now_ns);
+/* Head, wand and buttons at photon_ns into `input`; a body never seen keeps its pose there. */
+void trackers_sample(const struct trackers *trackers, int64_t photon_ns,
+		     struct master_input *input);
+
+#endif
