@@ -12,5 +12,29 @@ daemon_libgdaemon_a_SOURCES = \
 	daemon/notify.c daemon/notify.h \
 	daemon/options.c daemon/options.h \
 	daemon/privileges.c daemon/privileges.h \
-	daemon/socket.c daemon/socket.h
-daemon_libgdaemon_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(SYSTEMD_CFLAGS)
+	daemon/socket.c daemon/socket.h \
+	daemon/trackers.c daemon/trackers.h
+daemon_libgdaemon_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(LIBCONFIG_CFLAGS) $(SYSTEMD_CFLAGS)
+
+DAEMON_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(SODIUM_CFLAGS) $(SYSTEMD_CFLAGS) -pthread
+DAEMON_LIBS = daemon/libgdaemon.a $(PROTOCOL_LIBS) $(TRACKING_LIBS) $(RENDERER_LIBS) \
+	$(SYSTEMD_LIBS) -lpthread
+
+sbin_PROGRAMS += daemon/grotto-master daemon/grotto-node
+
+daemon_grotto_master_SOURCES = \
+	daemon/master.c daemon/master.h \
+	daemon/master_main.c \
+	daemon/master_report.c \
+	daemon/room_files.c daemon/room_files.h
+daemon_grotto_master_CFLAGS = $(DAEMON_CFLAGS)
+daemon_grotto_master_LDADD = $(DAEMON_LIBS)
+
+daemon_grotto_node_SOURCES = \
+	daemon/node.c daemon/node.h \
+	daemon/node_main.c \
+	daemon/node_report.c \
+	daemon/pictures.c daemon/pictures.h \
+	daemon/room_files.c daemon/room_files.h
+daemon_grotto_node_CFLAGS = $(DAEMON_CFLAGS)
+daemon_grotto_node_LDADD = $(DAEMON_LIBS)

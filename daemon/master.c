@@ -1,5 +1,6 @@
 #include "daemon/master.h"
 
+#include "base/clock.h"
 #include "base/result.h"
 
 #include <errno.h>
@@ -18,19 +19,9 @@ static const char *node_name(const struct master *m, int node)
 		       m->params.layout->nodes[node].name : "?";
 }
 
-/* Nodes that a datagram to all is for; those that are gone get none. */
-static uint64_t present_nodes(const struct master *m)
+static size_t members(const struct master *m)
 {
-	uint64_t bits = 0;
-
-	for (size_t i = 0; i < m->params.layout->node_count; i++) {
-		struct fdp_peer_status peer;
-		fdp_master_peer(m->fdp, i, &peer);
-		if (peer.state == FDP_PEER_JOINING || peer.state == FDP_PEER_LIVE ||
-		    peer.state == FDP_PEER_LATE)
-			bits |= UINT64_C(1) << i;
-	}
-	return bits;
+	return (size_t)__builtin_popcountll(m->members);
 }
 
 static uint64_t barrier_nodes(const struct master *m)
@@ -50,13 +41,12 @@ static void send_datagram(void *ctx, int to, const uint8_t *bytes, size_t len)
 {
 	struct master *m = ctx;
 
-	/* During create there is no state to ask yet, and nothing to send to. */
-	if (m->fdp)
-		net_send(m->net, to, to == FDP_TO_ALL ? present_nodes(m) : 0, bytes, len);
+	net_send(m->net, to, bytes, len);
 }
 
 static void node_gone(struct master *m, int node)
 {
+	m->members &= ~(UINT64_C(1) << node);
 	m->behind &= ~(UINT64_C(1) << node);
 	frame_stats_gone(&m->stats, (unsigned)node);
 }
@@ -90,14 +80,17 @@ static void on_event(void *ctx, const struct fdp_master_event *event)
 
 	switch (event->kind) {
 	case FDP_MASTER_JOINED:
+		/* Counts from the next frame on. */
 		m->joined++;
+		m->members |= UINT64_C(1) << event->node;
 		m->restart_light = true;
-		gr_notice("node %s joined; %zu of %zu live", node_name(m, event->node),
-			  fdp_master_live(m->fdp), m->params.layout->node_count);
+		gr_notice("node %s joined: %zu of %zu", node_name(m, event->node), members(m),
+			  m->params.layout->node_count);
 		break;
 	case FDP_MASTER_LEFT:
 		node_gone(m, event->node);
-		gr_notice("node %s left", node_name(m, event->node));
+		gr_notice("node %s left: %s", node_name(m, event->node),
+			  event->reason ? event->reason : "no reason given");
 		break;
 	case FDP_MASTER_REFUSED: node_refused(m, event, now_ns); break;
 	case FDP_MASTER_LATE:
@@ -190,7 +183,7 @@ static void begin_frame(struct master *m, int64_t now_ns)
 
 static bool may_begin(struct master *m)
 {
-	size_t live = fdp_master_live(m->fdp);
+	size_t live = members(m);
 
 	if (!fdp_master_idle(m->fdp) || m->finish_ns != 0 || live == 0)
 		return false;
@@ -308,7 +301,7 @@ static void log_send_failures(struct master *m, int64_t now_ns)
 static void on_second(void *ctx, int64_t now_ns)
 {
 	struct master *m = ctx;
-	size_t live = fdp_master_live(m->fdp), all = m->params.layout->node_count;
+	size_t live = members(m), all = m->params.layout->node_count;
 
 	/* Waiting for nodes is healthy; a room that has them must show frames. */
 	if (live == 0 || !m->started)
@@ -412,7 +405,7 @@ void master_destroy(struct master **master)
 	net_fds(m->net, fds);
 	loop_remove(m->loop, fds[0]);
 	fdp_master_destroy(&m->fdp);
-	param_state_destroy(m->state);
+	param_state_destroy(&m->state);
 	sodium_memzero(m->params.key, sizeof m->params.key);
 	free(m);
 	*master = NULL;

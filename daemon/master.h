@@ -52,6 +52,7 @@ struct master {
 	bool started;       /* `expect` nodes were there */
 	bool restart_light; /* at the next frame */
 	int64_t light_restart_ns; /* when it was last */
+	uint64_t members;   /* nodes that joined and have not gone, bit per node */
 	uint64_t behind;    /* nodes that missed a barrier and have not caught up */
 	int64_t finish_ns;  /* no longer waits for reports than this; 0: not finishing */
 	bool left;

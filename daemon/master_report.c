@@ -1,5 +1,6 @@
 #include "daemon/master.h"
 
+#include "base/clock.h"
 #include "base/result.h"
 #include "daemon/control.h"
 #include "daemon/json.h"
@@ -133,7 +134,7 @@ int master_write_json(const struct master *m, int64_t now_ns, char *text, size_t
 	json_f64(&json, "uptime_s", (double)(now_ns - m->start_ns) * 1e-9);
 	json_f64(&json, "frame_hz", (double)m->params.layout->rates.frame_hz);
 	json_bool(&json, "frame_clock", m->params.frame_clock);
-	json_bool(&json, "running", m->started && fdp_master_live(m->fdp) > 0);
+	json_bool(&json, "running", m->started && m->members != 0);
 	write_frames(&json, m);
 	json_open(&json, "nodes", '[');
 	for (size_t i = 0; i < m->params.layout->node_count; i++)

@@ -87,12 +87,13 @@ static void use_buttons(struct master_state *state, const struct master_input *i
 static void place_orbit(const struct scene_lamp *lamp, int64_t time_ns, vec3 position,
 			vec3 direction)
 {
+	/* A negative period turns the other way, none at all stands still. */
 	double period_ns = (double)lamp->orbit_period_s * 1e9, turns, start, angle;
 	double x = lamp->position[0] - lamp->orbit_center[0];
 	double z = lamp->position[2] - lamp->orbit_center[2];
 	float c, s;
 
-	turns = period_ns > 0 ? fmod((double)time_ns, period_ns) / period_ns : 0;
+	turns = period_ns != 0 ? fmod((double)time_ns, period_ns) / period_ns : 0;
 	start = x == 0 && z == 0 ? 0 : atan2(-z, x);
 	angle = start + 2 * M_PI * turns;
 	position[0] = lamp->orbit_center[0] + lamp->orbit_radius_m * (float)cos(angle);

@@ -1,5 +1,6 @@
 #include "daemon/node.h"
 
+#include "base/clock.h"
 #include "base/result.h"
 #include "daemon/node_frame.h"
 
@@ -16,7 +17,7 @@ static void send_datagram(void *ctx, const uint8_t *bytes, size_t len)
 {
 	struct node *n = ctx;
 
-	net_send(n->net, 0, 0, bytes, len);
+	net_send(n->net, 0, bytes, len);
 }
 
 static void apply_frame(struct node *n, uint64_t frame, int64_t now_ns)

@@ -82,7 +82,7 @@ static bool set_value(const struct option_spec *spec, void *values, const char *
 	return false;
 }
 
-enum options_outcome options_parse(const char *program, const char *summary,
+enum options_outcome command_line_parse(const char *program, const char *summary,
 				   const struct option_spec *specs, size_t count, void *values,
 				   int argc, char **argv)
 {
@@ -133,8 +133,8 @@ static const char *const target_words[] = { "layout", "headless", "window", "ful
 
 #define AT(type, member) offsetof(struct type, member)
 #define COMMON(type)                                                                               \
-	{ "layout", OPTION_TEXT, AT(type, common.layout), "FILE", "the cave layout [" GROTTO_SYSCONFDIR "/layout.cfg]", 0, 0, NULL, NULL }, \
-	{ "scene", OPTION_TEXT, AT(type, common.scene), "FILE", "the scene file [" GROTTO_SYSCONFDIR "/scene.cfg]", 0, 0, NULL, NULL }, \
+	{ "layout", OPTION_TEXT, AT(type, common.layout), "FILE", "the cave layout [" GROTTO_SYSCONFDIR "/cave.cave]", 0, 0, NULL, NULL }, \
+	{ "scene", OPTION_TEXT, AT(type, common.scene), "FILE", "the scene file [" GROTTO_SYSCONFDIR "/scene.scene]", 0, 0, NULL, NULL }, \
 	{ "key", OPTION_TEXT, AT(type, common.key), "FILE", "the cluster key, instead of the layout's", 0, 0, NULL, NULL }, \
 	{ "user", OPTION_TEXT, AT(type, common.user), "NAME", "user to become when started as root", 0, 0, NULL, NULL }, \
 	{ "report", OPTION_TEXT, AT(type, common.report), "FILE", "JSON figures written at the end", 0, 0, NULL, NULL }, \
@@ -163,15 +163,15 @@ static const struct option_spec node_specs[] = {
 };
 
 static const struct common_options common_defaults = {
-	.layout = GROTTO_SYSCONFDIR "/layout.cfg",
-	.scene = GROTTO_SYSCONFDIR "/scene.cfg",
+	.layout = GROTTO_SYSCONFDIR "/cave.cave",
+	.scene = GROTTO_SYSCONFDIR "/scene.scene",
 	.log_level = GR_LOG_INFO,
 };
 
 enum options_outcome master_options_parse(struct master_options *options, int argc, char **argv)
 {
 	*options = (struct master_options){ .common = common_defaults, .expect = 1 };
-	return options_parse("grotto-master",
+	return command_line_parse("grotto-master",
 			     "Runs a room: tracks the visitor, tells every node what to draw, swaps all walls in step.",
 			     master_specs, sizeof master_specs / sizeof *master_specs, options, argc,
 			     argv);
@@ -182,7 +182,7 @@ enum options_outcome node_options_parse(struct node_options *options, int argc, 
 	enum options_outcome outcome;
 
 	*options = (struct node_options){ .common = common_defaults, .gpu = -2 };
-	outcome = options_parse("grotto-node", "Draws one wall of a room for its grotto-master.",
+	outcome = command_line_parse("grotto-node", "Draws one wall of a room for its grotto-master.",
 				node_specs, sizeof node_specs / sizeof *node_specs, options, argc,
 				argv);
 	if (outcome == OPTIONS_RUN && !options->node) {

@@ -32,9 +32,9 @@ enum options_outcome { OPTIONS_RUN, OPTIONS_DONE, OPTIONS_WRONG };
  * after --help or --version (printed on stdout), OPTIONS_WRONG with a line in
  * the log that says what would be right.
  */
-enum options_outcome options_parse(const char *program, const char *summary,
-				   const struct option_spec *specs, size_t count, void *values,
-				   int argc, char **argv);
+enum options_outcome command_line_parse(const char *program, const char *summary,
+					const struct option_spec *specs, size_t count, void *values,
+					int argc, char **argv);
 
 /* What both daemons take. */
 struct common_options {

@@ -1,5 +1,3 @@
-#include "config.h" /* _GNU_SOURCE: asprintf */
-
 #include "daemon/room_files.h"
 
 #include "base/clock.h"
@@ -7,21 +5,8 @@
 #include "base/result.h"
 
 #include <sodium.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-char *room_files_beside(const char *beside, const char *path)
-{
-	const char *slash = beside ? strrchr(beside, '/') : NULL;
-	char *out;
-
-	if (path[0] == '/' || !slash)
-		return strdup(path);
-	if (asprintf(&out, "%.*s/%s", (int)(slash - beside), beside, path) < 0)
-		return NULL;
-	return out;
-}
 
 static int load_key(struct room_files *out, const struct common_options *options,
 		    struct gr_diag *diag)

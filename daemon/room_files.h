@@ -29,7 +29,4 @@ void room_files_finish(struct room_files *files);
 /* What a failed load means to the one who started the daemon: enum gr_exit. */
 int room_files_exit(int result);
 
-/* `path` as seen from the file `beside`: itself when absolute. Caller frees; NULL without memory. */
-char *room_files_beside(const char *beside, const char *path);
-
 #endif

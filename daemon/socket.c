@@ -347,7 +347,7 @@ static void queue(struct net *net, const struct net_address *to, const uint8_t *
 	net->out[i].msg_hdr.msg_namelen = to->len;
 }
 
-void net_send(struct net *net, int to, uint64_t wanted, const uint8_t *bytes, size_t len)
+void net_send(struct net *net, int to, const uint8_t *bytes, size_t len)
 {
 	if (len > net->datagram_max) {
 		net->stats.send_failed++;
@@ -360,8 +360,7 @@ void net_send(struct net *net, int to, uint64_t wanted, const uint8_t *bytes, si
 		queue(net, &net->group, bytes, len);
 	} else if (to < 0) {
 		for (size_t i = 0; i < net->peer_count; i++)
-			if (wanted >> i & 1)
-				queue(net, &net->peers[i], bytes, len);
+			queue(net, &net->peers[i], bytes, len);
 	}
 }
 

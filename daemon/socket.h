@@ -54,11 +54,11 @@ int net_fds(const struct net *net, int fds[2]);
 void net_stats(const struct net *net, struct net_stats *out);
 
 /*
- * Master: queues a datagram to node `to`, or with -1 to all: once to the
- * group, or to each node for which `wanted` bit is set when there is none.
+ * Master: queues a datagram to node `to`, or with -1 to all nodes: once to
+ * the group, or to each where there is none.
  * Node: `to` is 0, its master. net_flush sends the queue.
  */
-void net_send(struct net *net, int to, uint64_t wanted, const uint8_t *bytes, size_t len);
+void net_send(struct net *net, int to, const uint8_t *bytes, size_t len);
 void net_flush(struct net *net);
 /* Master: node `node` was heard, authentically, from there. */
 void net_learn(struct net *net, int node, const struct net_address *from);

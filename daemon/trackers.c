@@ -1,7 +1,7 @@
 #include "daemon/trackers.h"
 
 #include "base/result.h"
-#include "daemon/room_files.h"
+#include "config/config_text.h"
 #include "tracking/replay.h"
 #include "tracking/sim.h"
 
@@ -38,7 +38,7 @@ static int open_sim(struct track_source **out, const struct layout *layout,
 static int open_replay(struct track_source **out, const struct layout *layout,
 		       const struct layout_tracker *tracker, struct gr_diag *diag)
 {
-	char *path = room_files_beside(layout->path, tracker->file);
+	char *path = config_text_beside(layout->path, tracker->file);
 	int r = path ? track_replay_create(out, path, tracker->loop, diag) : GR_ERR_NOMEM;
 
 	free(path);
