@@ -89,9 +89,9 @@ static int next(struct fixture *f, bool restart)
 
 static void near3(const float *a, float x, float y, float z)
 {
-	assert_float_equal(a[0], x, 1e-5);
-	assert_float_equal(a[1], y, 1e-5);
-	assert_float_equal(a[2], z, 1e-5);
+	assert_float_equal(a[0], x, 1e-5f);
+	assert_float_equal(a[1], y, 1e-5f);
+	assert_float_equal(a[2], z, 1e-5f);
 }
 
 static void scene_file_becomes_parameters(void **state)
@@ -103,9 +103,9 @@ static void scene_file_becomes_parameters(void **state)
 	assert_int_equal(*param_u32(f->params, PARAM_GI_ON), 1);
 	assert_int_equal(*param_u32(f->params, PARAM_GI_STEPS), 12);
 	assert_int_equal(*param_u32(f->params, PARAM_TONE_CURVE), 1);
-	assert_float_equal(*param_f32(f->params, PARAM_GAMMA_ENCODE), 1.25 / 2.2, 1e-6);
-	assert_float_equal(*param_f32(f->params, PARAM_EYE_SEPARATION), 0.064, 1e-7);
-	assert_float_equal(*param_f32(f->params, PARAM_SCATTERING), 0.1, 1e-7);
+	assert_float_equal(*param_f32(f->params, PARAM_GAMMA_ENCODE), 1.25f / 2.2f, 1e-6f);
+	assert_float_equal(*param_f32(f->params, PARAM_EYE_SEPARATION), 0.064f, 1e-7f);
+	assert_float_equal(*param_f32(f->params, PARAM_SCATTERING), 0.1f, 1e-7f);
 	assert_int_equal(*(const uint64_t *)param_get(f->params, PARAM_FRAME_TIME), 10 * GR_NS_PER_MS);
 	assert_int_equal(*(const uint64_t *)param_get(f->params, PARAM_GI_EPOCH), 1);
 	near3(param_f32(f->params, PARAM_HEAD_POSITION), 0, 1.7f, 0.5f);
@@ -179,7 +179,7 @@ static void wand_flies_the_room(void **state)
 {
 	struct fixture *f = *state;
 
-	assert_float_equal(master_fly_speed(0.4f), 1.4, 1e-6);
+	assert_float_equal(master_fly_speed(0.4f), 1.4f, 1e-6f);
 	assert_float_equal(master_fly_speed(0), 0, 0);
 	assert_float_equal(master_fly_speed(5), master_fly_speed(1), 0);
 	f->input.buttons = MASTER_BUTTON_FLY;
@@ -233,7 +233,7 @@ static void values_out_of_range_are_named(void **state)
 	f->input.buttons = MASTER_BUTTON_FLY;
 	f->input.step_ns = 100 * GR_NS_PER_MS;
 	assert_int_equal(next(f, false), GR_ERR_RANGE);
-	assert_float_equal(f->state.T_scene_room.p[0], -1e5, 0);
+	assert_float_equal(f->state.T_scene_room.p[0], -1e5f, 0);
 }
 
 static int set(struct fixture *f, char *why, size_t size, const char *text)
