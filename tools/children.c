@@ -265,6 +265,9 @@ void children_end(struct children *children, int64_t patience_ns)
 
 	if (children->running == 0)
 		return;
+	for (size_t i = 0; i < children->count; i++)
+		if (children->items[i].pidfd >= 0)
+			children->items[i].told = true;
 	signal_running(children, SIGTERM);
 	while (children->running > 0 && gr_clock_now(&gr_clock_monotonic) < until) {
 		int64_t left = until - gr_clock_now(&gr_clock_monotonic);

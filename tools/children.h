@@ -22,6 +22,7 @@ struct child {
 	pid_t pid;
 	int pidfd;  /* -1 once it has ended */
 	int status; /* as waitpid gives it, once it has ended */
+	bool told;  /* it did not end by itself: children_end told it to */
 };
 
 struct children {

@@ -136,6 +136,14 @@ static void demo_finish(struct demo *demo)
 	scene_file_destroy(&demo->scene);
 }
 
+static bool all_ended_well(const struct demo *demo)
+{
+	for (size_t i = 0; i < demo->children.count; i++)
+		if (!child_ended_well(&demo->children.items[i]))
+			return false;
+	return demo->children.count == demo->layout->node_count + 1;
+}
+
 static int run(struct demo *demo)
 {
 	int faults;
@@ -149,8 +157,7 @@ static int run(struct demo *demo)
 	       demo->scene->name, demo->options.out);
 	fflush(stdout);
 	faults = demo_run(demo) == GR_OK ? demo_summary(demo) : -1;
-	if (demo->children.count == demo->layout->node_count + 1 && !demo->interrupted &&
-	    demo_room(demo) != GR_OK)
+	if (all_ended_well(demo) && demo_room(demo) != GR_OK)
 		faults = -1;
 	children_finish(&demo->children);
 	return faults == 0 ? GR_EXIT_OK : GR_EXIT_RUNTIME;

@@ -15,8 +15,8 @@
 #define ARGUMENTS_MAX 32
 #define PROGRESS_NS (GR_NS_PER_S / 4)
 #define ASK_NS (GR_NS_PER_S / 5)
-/* After the master's end the nodes save their last pictures, on slow machines slowly. */
-#define NODES_END_NS (60 * GR_NS_PER_S)
+/* After the master's end the nodes save their last pictures; at most, in seconds. */
+#define NODES_END_S 60
 /* After SIGTERM. */
 #define END_NS (10 * GR_NS_PER_S)
 
@@ -204,6 +204,13 @@ static bool go_on(const struct demo *demo, size_t ended)
 	return child_ended_well(&demo->children.items[ended]);
 }
 
+static int64_t nodes_end_ns(const struct demo *demo)
+{
+	int seconds = demo->options.patience_s;
+
+	return (seconds < NODES_END_S ? seconds : NODES_END_S) * GR_NS_PER_S;
+}
+
 static void watch(struct demo *demo)
 {
 	struct children *children = &demo->children;
@@ -224,7 +231,7 @@ static void watch(struct demo *demo)
 			well = go_on(demo, ended);
 			if (ended == 0) {
 				children_tick(children, 0);
-				until_ns = gr_clock_now(&gr_clock_monotonic) + NODES_END_NS;
+				until_ns = gr_clock_now(&gr_clock_monotonic) + nodes_end_ns(demo);
 			}
 			break;
 		case CHILDREN_TICK:

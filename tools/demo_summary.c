@@ -61,16 +61,15 @@ static void show_log(const char *path)
 	fprintf(stderr, "--- end of %s\n%s---\n", path, start);
 }
 
-static bool judge_process(struct summary *summary, const struct child *child)
+static void judge_process(struct summary *summary, const struct child *child)
 {
 	char how[96];
 
-	if (child_ended_well(child))
-		return true;
+	if (child->told || child_ended_well(child))
+		return;
 	child_describe(child, how, sizeof how);
 	add_fault(summary, "%s %s", child->name, how);
 	show_log(child->log);
-	return false;
 }
 
 static void judge_node(struct summary *summary, size_t i)
@@ -114,15 +113,25 @@ static void judge(struct summary *summary)
 {
 	const struct demo *demo = summary->demo;
 	const struct children *children = &demo->children;
+	bool blamed;
 
 	if (demo->interrupted)
 		add_fault(summary, "interrupted");
 	if (demo->stalled)
 		add_fault(summary, "no new frame for %d s", demo->options.patience_s);
-	if (children->count > 0 && judge_process(summary, &children->items[0]) && !summary->master)
+	for (size_t i = 0; i < children->count; i++)
+		judge_process(summary, &children->items[i]);
+	/* Those that were told to end because of one of these are not to blame. */
+	blamed = summary->fault_count > 0;
+	for (size_t i = 0; i < children->count && !blamed; i++)
+		if (children->items[i].told)
+			add_fault(summary, "%s did not end after the last frame",
+				  children->items[i].name);
+	if (children->count > 0 && child_ended_well(&children->items[0]) && !summary->master)
 		add_fault(summary, "the master left no report");
 	for (size_t i = 0; i < demo->layout->node_count; i++)
-		if (i + 1 < children->count && judge_process(summary, &children->items[i + 1]))
+		if (i + 1 < children->count && !children->items[i + 1].told &&
+		    child_ended_well(&children->items[i + 1]))
 			judge_node(summary, i);
 }
 

@@ -14,7 +14,9 @@ static const struct command {
 	const char *summary;
 } commands[] = {
 	{ "check", command_check, "check layout and scene files, report gaps between walls" },
+	{ "demo", command_demo, "run a whole cave on this machine, leave its pictures and figures" },
 	{ "key", command_key, "make a cluster key" },
+	{ "render", command_render, "draw one still of a scene" },
 	{ "status", command_status, "ask the running master how its room is" },
 };
 

@@ -17,7 +17,13 @@ tools_grotto_SOURCES = \
 	tools/command.h \
 	tools/grotto.c \
 	tools/check.c \
+	tools/demo.c tools/demo.h \
+	tools/demo_plan.c tools/demo_plan.h \
+	tools/demo_room.c \
+	tools/demo_run.c \
+	tools/demo_summary.c \
 	tools/key.c \
+	tools/render.c \
 	tools/status.c
 tools_grotto_CPPFLAGS = $(AM_CPPFLAGS) -DGROTTO_SBINDIR='"$(sbindir)"'
 tools_grotto_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(JSONC_CFLAGS)
