@@ -222,6 +222,7 @@ void sim_start_master(struct sim *s)
 	assert_int_equal(param_state_create(&s->state), GR_OK);
 	s->frame = 0;
 	s->begin_at_ns = s->now_ns;
+	s->stop_at = UINT64_MAX;
 }
 
 void sim_kill_master(struct sim *s)
@@ -273,17 +274,22 @@ static void begin_frame(struct sim *s)
 		assert_true(param_set(s->state, PARAM_GI_EPOCH, &frame, frame) >= 0);
 		s->join_pending = false;
 	}
-	for (int i = 0; s->lamps && i < 48; i++)
-		lamps[i] = (float)uniform(s);
-	if (s->lamps) {
-		assert_true(param_set(s->state, PARAM_LAMP_POSITION, lamps, frame) >= 0);
-		assert_true(param_set(s->state, PARAM_LAMP_INTENSITY, lamps, frame) >= 0);
+	for (int k = 0; s->lamps && k < 2; k++) {
+		for (int i = 0; i < 48; i++)
+			lamps[i] = (float)uniform(s);
+		assert_true(param_set(s->state, k ? PARAM_LAMP_POSITION : PARAM_LAMP_INTENSITY,
+				      lamps, frame) >= 0);
 	}
 	s->frame = frame;
 	s->begun_ns = s->now_ns;
 	s->begin_at_ns = INT64_MAX;
 	s->state_hash[frame % SIM_STATES] = param_state_hash(s->state, 0);
 	assert_int_equal(fdp_master_begin(s->master, s->state, frame, s->now_ns), GR_OK);
+}
+
+static bool may_begin(const struct sim *s)
+{
+	return s->running && fdp_master_idle(s->master) && s->swapped < s->stop_at;
 }
 
 static int64_t earliest(const struct sim *s)
@@ -293,7 +299,7 @@ static int64_t earliest(const struct sim *s)
 	if (s->master) {
 		at = fdp_master_next(s->master);
 		next = at < next ? at : next;
-		if (s->running && fdp_master_idle(s->master) && s->begin_at_ns < next)
+		if (may_begin(s) && s->begin_at_ns < next)
 			next = s->begin_at_ns;
 	}
 	for (size_t i = 0; i < s->node_count; i++) {
@@ -366,7 +372,7 @@ static void step(struct sim *s)
 		fdp_master_tick(s->master, s->now_ns);
 		assert_true(fdp_master_next(s->master) > s->now_ns);
 	}
-	if (s->running && fdp_master_idle(s->master) && s->now_ns >= s->begin_at_ns)
+	if (may_begin(s) && s->now_ns >= s->begin_at_ns)
 		begin_frame(s);
 }
 
@@ -393,11 +399,13 @@ void sim_run_frames(struct sim *s, uint64_t frames)
 	const int64_t give_up = s->now_ns + (int64_t)(frames + 100) * 4 * SIM_DEADLINE_NS;
 
 	s->running = true;
+	s->stop_at = until;
 	while (s->swapped < until) {
 		advance(s, give_up);
 		assert_true(s->now_ns < give_up); /* the room never stops */
 	}
 	s->running = false;
+	s->stop_at = UINT64_MAX;
 	sim_run_ns(s, 2 * SIM_MS); /* let the last SWAP arrive */
 }
 

@@ -58,6 +58,7 @@ struct sim {
 	struct param_state *state;
 	uint64_t frame;
 	bool running;
+	uint64_t stop_at; /* begin no frame once so many have swapped */
 	int64_t begin_at_ns, begun_ns;
 	uint64_t state_hash[SIM_STATES];
 	uint64_t swapped, joined, left, late, evicted, mismatches, refused;
