@@ -1,2 +1,4 @@
 # What docs/ adds to the build.
 dist_doc_DATA += docs/layout.md docs/scene.md
+dist_doc_DATA += README.md CHANGELOG.md LICENSE docs/architecture.md docs/operating.md docs/tracking.md
+include $(top_srcdir)/docs/man/local.mk

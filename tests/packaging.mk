@@ -1,6 +1,6 @@
 # What a package of grotto puts beside the programs: units, manual, scripts.
-dist_check_SCRIPTS += tests/packaging/units.sh
-TESTS += tests/packaging/units.sh
+dist_check_SCRIPTS += tests/packaging/manual.sh tests/packaging/units.sh
+TESTS += tests/packaging/manual.sh tests/packaging/units.sh
 
 # The same tests with their slow sweeps.
 check-long:

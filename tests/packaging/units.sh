@@ -3,6 +3,7 @@
 # and are hardened; the sysusers file makes the user. Prints the exposure
 # scores that docs/operating.md states.
 set -eu
+export LC_ALL=C
 srcdir=${srcdir:-.}
 command -v systemd-analyze >/dev/null || { echo "skipped: no systemd-analyze"; exit 77; }
 
