@@ -41,6 +41,8 @@ static void check_tracker(struct options_reader *reader, const struct layout_fil
 	if (!tracker->head && !tracker->wand)
 		options_fault(reader, GR_DIAG_ERROR, entry->at, NULL,
 			      "tracks neither head nor wand; leave it out or set one of them");
+	if ((int)tracker->kind == OPTION_ABSENT) /* reported already */
+		return;
 	if (tracker->kind == LAYOUT_TRACKER_REPLAY && !options_given(entry->at, "file"))
 		options_fault(reader, GR_DIAG_ERROR, entry->at, "file",
 			      "missing; a replay needs the log that it replays");

@@ -32,6 +32,8 @@ static void check_lamp(struct options_reader *reader, struct scene_form_lamp *en
 {
 	struct scene_lamp *lamp = &entry->lamp;
 
+	if ((int)lamp->kind == OPTION_ABSENT) /* reported already */
+		return;
 	if (!make_unit(lamp->direction))
 		options_fault(reader, GR_DIAG_ERROR, entry->at, "direction",
 			      "has no length; a lamp that shines down has [0.0, -1.0, 0.0]");

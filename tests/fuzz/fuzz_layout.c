@@ -1,0 +1,52 @@
+/*
+ * libFuzzer target: any bytes are a layout or are refused with a message; what
+ * is taken writes, reads back and hashes to the same.
+ */
+#include "base/result.h"
+#include "config/layout.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t len);
+
+static void check(const struct layout *layout, struct gr_diag *diag)
+{
+	struct layout *again;
+	char *text = NULL, *key = layout_key_path(layout);
+	size_t size;
+	FILE *out = open_memstream(&text, &size);
+	vec3 corner[3];
+	int pixels[2];
+
+	for (size_t i = 0; i < layout->node_count; i++) {
+		layout_node_corners(layout, i, corner[0], corner[1], corner[2]);
+		layout_node_pixels(layout, i, pixels);
+		if (pixels[0] < 1 || pixels[1] < 1 || layout_find_node(layout, layout->nodes[i].name) != (int)i)
+			abort();
+	}
+	layout_report_geometry(layout, diag);
+	if (!out || layout_write(out, layout) != GR_OK || fclose(out))
+		abort();
+	if (layout_parse(text, size, layout->path, &again, diag) != GR_OK ||
+	    memcmp(again->hash, layout->hash, sizeof again->hash))
+		abort();
+	layout_destroy(&again);
+	free(text);
+	free(key);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t len)
+{
+	struct gr_diag diag = { 0 };
+	struct layout *layout;
+	int result = layout_parse((const char *)bytes, len, "fuzz/fuzz.cave", &layout, &diag);
+
+	if ((result == GR_OK) != !!layout || (result == GR_OK) != !diag.errors)
+		abort();
+	if (layout)
+		check(layout, &diag);
+	layout_destroy(&layout);
+	gr_diag_finish(&diag);
+	return 0;
+}
