@@ -22,13 +22,25 @@ void frame_stats_begin(struct frame_stats *stats, uint64_t frame, uint64_t expec
 	stats->begun++;
 }
 
+void frame_stats_applied(struct frame_stats *stats, unsigned node, uint64_t frame, int64_t now_ns)
+{
+	struct frame_open *open = find(stats, frame);
+
+	if (!open || node >= FRAME_STATS_NODES || open->applied >> node & 1)
+		return;
+	open->applied |= UINT64_C(1) << node;
+	if ((open->applied & open->expected) == open->expected)
+		histogram_add(&stats->applied, (now_ns - open->begin_ns) / GR_NS_PER_US);
+}
+
 void frame_stats_swap_sent(struct frame_stats *stats, uint64_t frame, int64_t now_ns)
 {
-	const struct frame_open *open = find(stats, frame);
+	struct frame_open *open = find(stats, frame);
 	int64_t took;
 
 	if (!open)
 		return;
+	open->swap_sent_ns = now_ns;
 	took = now_ns - open->begin_ns;
 	histogram_add(&stats->swap_sent, took / GR_NS_PER_US);
 	stats->smoothed_swap_ns = stats->smoothed_swap_ns == 0 ?
@@ -59,6 +71,8 @@ void frame_stats_swapped(struct frame_stats *stats, unsigned node, uint64_t fram
 	open->arrived |= UINT64_C(1) << node;
 	if ((open->arrived & open->expected) == open->expected)
 		histogram_add(&stats->last_swapped, (now_ns - open->begin_ns) / GR_NS_PER_US);
+	if ((open->arrived & open->expected) == open->expected && open->swap_sent_ns != 0)
+		histogram_add(&stats->swap_to_last, (now_ns - open->swap_sent_ns) / GR_NS_PER_US);
 	close_if_whole(stats, open);
 }
 

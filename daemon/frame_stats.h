@@ -21,19 +21,27 @@
 struct frame_open {
 	uint64_t frame; /* 0: unused */
 	int64_t begin_ns;
-	uint64_t expected, arrived; /* bit per node */
+	int64_t swap_sent_ns; /* 0: not yet */
+	uint64_t expected, applied, arrived; /* bit per node */
 	int64_t first_swap_ns, last_swap_ns; /* nodes' clocks */
 };
 
 struct frame_stats {
 	uint64_t begun, complete, incomplete; /* frames; all reports came, or not all */
-	struct histogram swap_sent, last_swapped, skew; /* us */
+	/*
+	 * us. From begin: the last node has applied the state (what the thesis
+	 * calls synchronisation, seed 004 section 4.2), SWAP is sent, the last
+	 * node's report of the swap is here. From SWAP: the same report. Skew.
+	 */
+	struct histogram applied, swap_sent, last_swapped, swap_to_last, skew;
 	int64_t smoothed_swap_ns; /* begin to SWAP, running mean over about 8 frames; 0 before the first */
 	struct frame_open open[FRAME_STATS_OPEN];
 };
 
 void frame_stats_begin(struct frame_stats *stats, uint64_t frame, uint64_t expected,
 		       int64_t now_ns);
+/* Node said that it holds the state of `frame`. */
+void frame_stats_applied(struct frame_stats *stats, unsigned node, uint64_t frame, int64_t now_ns);
 void frame_stats_swap_sent(struct frame_stats *stats, uint64_t frame, int64_t now_ns);
 /* Node swapped `frame` at swap_local_ns of its clock; now_ns is the report's arrival. */
 void frame_stats_swapped(struct frame_stats *stats, unsigned node, uint64_t frame,

@@ -11,6 +11,8 @@
 #include <string.h>
 
 #define RECEIVE_MOST 256 /* then timers and other descriptors have their turn */
+/* A light that starts anew costs many frames' work in one; the barrier waits longer for it. */
+#define RESTART_PATIENCE 8
 #define LIGHT_RESTART_NS GR_NS_PER_S /* a slow node may not make the others start over more often */
 
 static const char *node_name(const struct master *m, int node)
@@ -103,11 +105,13 @@ static void on_event(void *ctx, const struct fdp_master_event *event)
 	case FDP_MASTER_EVICTED:
 		m->evicted++;
 		node_gone(m, event->node);
-		gr_error("node %s is gone: it missed %d frames in a row; the room goes on without it",
+		gr_error("node %s is gone: it missed %d frames in a row; the room goes on without it "
+			 "(if it lives, rates.barrier_deadline_ms is too short for it)",
 			 node_name(m, event->node), m->params.layout->rates.evict_frames);
 		break;
 	case FDP_MASTER_MISMATCH: node_mismatch(m, event, now_ns); break;
 	case FDP_MASTER_SWAP:
+		m->swap_ns = now_ns;
 		frame_stats_swap_sent(&m->stats, event->frame, now_ns);
 		notify_feed(&m->notify, now_ns);
 		break;
@@ -161,6 +165,8 @@ static void begin_frame(struct master *m, int64_t now_ns)
 	m->input.time_ns = m->last_time_ns = time_ns;
 	if (m->restart_light)
 		m->light_restart_ns = now_ns;
+	fdp_master_set_deadline(m->fdp, m->params.layout->rates.barrier_deadline_ns *
+						(m->restart_light ? RESTART_PATIENCE : 1));
 	r = master_state_frame(&m->scene_state, &m->input, m->restart_light, m->state, frame,
 			       &refused);
 	if (r < 0 && gr_log_limit(&m->range_limit, now_ns, &times))
@@ -196,6 +202,19 @@ static bool may_begin(struct master *m)
 	return true;
 }
 
+/*
+ * With the frame clock nothing but this keeps frames apart: the next begins
+ * when the last has been shown everywhere, or a period later should a report
+ * be lost. (With the real clock frames are a period apart, and the next is
+ * drawn while a display waits for its refresh to show the last.)
+ */
+static bool frame_time_has_come(const struct master *m, int64_t now_ns)
+{
+	if (!m->params.frame_clock || m->frame == 0)
+		return now_ns >= m->next_frame_ns;
+	return frame_stats_settled(&m->stats, m->frame) || now_ns >= m->swap_ns + m->period_ns;
+}
+
 /* Begins to end once the last frame has swapped: waits a little for the reports of it. */
 static void look_for_end(struct master *m, int64_t now_ns)
 {
@@ -215,10 +234,10 @@ static void advance(struct master *m)
 	net_flush(m->net);
 	look_for_end(m, now_ns);
 	if (may_begin(m)) {
-		if (m->params.frame_clock || now_ns >= m->next_frame_ns)
+		if (frame_time_has_come(m, now_ns))
 			begin_frame(m, now_ns);
 		else
-			frame_ns = m->next_frame_ns;
+			frame_ns = m->params.frame_clock ? m->swap_ns + m->period_ns : m->next_frame_ns;
 	}
 	if (m->finish_ns != 0)
 		frame_ns = m->finish_ns;
@@ -254,19 +273,26 @@ static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	}
 	net_learn(m->net, node, from);
 	fdp_master_peer(m->fdp, (size_t)node, &peer);
+	frame_stats_applied(&m->stats, (unsigned)node, peer.acked, now_ns);
 	if (peer.swapped_frame != 0)
 		frame_stats_swapped(&m->stats, (unsigned)node, peer.swapped_frame,
 				    peer.swap_local_ns, now_ns);
 }
 
+static void receive(struct master *m)
+{
+	int fds[2];
+
+	net_fds(m->net, fds);
+	net_receive(m->net, fds[0], RECEIVE_MOST, on_datagram, m);
+}
+
 static void on_readable(void *ctx, uint32_t events)
 {
 	struct master *m = ctx;
-	int fds[2];
 
 	(void)events;
-	net_fds(m->net, fds);
-	net_receive(m->net, fds[0], RECEIVE_MOST, on_datagram, m);
+	receive(m);
 	advance(m);
 }
 
@@ -274,7 +300,10 @@ static void on_tick(void *ctx, int64_t now_ns)
 {
 	struct master *m = ctx;
 
-	fdp_master_tick(m->fdp, now_ns);
+	(void)now_ns;
+	/* Nobody is late whose word has arrived. */
+	receive(m);
+	fdp_master_tick(m->fdp, gr_clock_now(&gr_clock_monotonic));
 	advance(m);
 }
 

@@ -51,6 +51,7 @@ struct master {
 	int64_t period_ns;
 	bool started;       /* `expect` nodes were there */
 	bool restart_light; /* at the next frame */
+	int64_t swap_ns;          /* when SWAP was sent last */
 	int64_t light_restart_ns; /* when it was last */
 	uint64_t members;   /* nodes that joined and have not gone, bit per node */
 	uint64_t behind;    /* nodes that missed a barrier and have not caught up */

@@ -81,8 +81,10 @@ static void write_frames(struct json *json, const struct master *m)
 	json_u64(json, "evicted", m->evicted);
 	json_u64(json, "refused", m->refused);
 	write_histogram(json, "skew_us", &m->stats.skew);
+	write_histogram(json, "commit_to_applied_us", &m->stats.applied);
 	write_histogram(json, "commit_to_swap_sent_us", &m->stats.swap_sent);
 	write_histogram(json, "commit_to_last_swap_us", &m->stats.last_swapped);
+	write_histogram(json, "swap_sent_to_last_swap_us", &m->stats.swap_to_last);
 }
 
 static void write_tracking(struct json *json, const struct master *m)

@@ -26,6 +26,8 @@ static void apply_frame(struct node *n, uint64_t frame, int64_t now_ns)
 	uint64_t times;
 
 	n->counts.applied++;
+	n->state_frame = frame;
+	n->state_hash = fdp_node_hash(n->fdp);
 	if (n->wanted != 0)
 		n->counts.dropped++;
 	n->wanted = 0;
@@ -127,7 +129,8 @@ static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	int64_t now_ns = gr_clock_now(&gr_clock_monotonic);
 	int r = fdp_node_receive(n->fdp, bytes, len, now_ns);
 
-	if (r < 0)
+	/* A master's words before it has taken us are none of ours, and nothing bad. */
+	if (r < 0 && !(r == GR_ERR_MISMATCH && fdp_node_status(n->fdp) != FDP_NODE_LIVE))
 		bad_datagram(n, r, from, now_ns);
 }
 
@@ -143,32 +146,29 @@ static void serve_protocol(struct node *n)
 	loop_timer_set(n->loop, n->tick_timer, fdp_node_next(n->fdp));
 }
 
-static void receive(struct node *n, int which)
+static void receive(struct node *n)
 {
-	int fds[2];
+	int fds[2], count = net_fds(n->net, fds);
 
-	net_fds(n->net, fds);
-	net_receive(n->net, fds[which], RECEIVE_MOST, on_datagram, n);
-	serve_protocol(n);
+	for (int i = 0; i < count; i++)
+		net_receive(n->net, fds[i], RECEIVE_MOST, on_datagram, n);
 }
 
 static void on_readable(void *ctx, uint32_t events)
 {
 	(void)events;
-	receive(ctx, 0);
-}
-
-static void on_group_readable(void *ctx, uint32_t events)
-{
-	(void)events;
-	receive(ctx, 1);
+	receive(ctx);
+	serve_protocol(ctx);
 }
 
 static void on_tick(void *ctx, int64_t now_ns)
 {
 	struct node *n = ctx;
 
-	fdp_node_tick(n->fdp, now_ns);
+	(void)now_ns;
+	/* The master is not silent when its words wait here because we were drawing. */
+	receive(n);
+	fdp_node_tick(n->fdp, gr_clock_now(&gr_clock_monotonic));
 	serve_protocol(n);
 }
 
@@ -321,7 +321,7 @@ static int join_loop(struct node *n)
 	if (r >= 0)
 		r = loop_add(n->loop, fds[0], EPOLLIN, on_readable, n);
 	if (r >= 0 && count > 1)
-		r = loop_add(n->loop, fds[1], EPOLLIN, on_group_readable, n);
+		r = loop_add(n->loop, fds[1], EPOLLIN, on_readable, n);
 	return r;
 }
 

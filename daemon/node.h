@@ -52,6 +52,7 @@ struct node {
 	struct notify notify;
 	struct render_frame next_frame, frame; /* what is wanted; what is or was drawn */
 	struct node_counts counts;
+	uint64_t state_frame, state_hash; /* of the last state applied */
 
 	/* Frame numbers, 0 for none. drawn: whose picture the target holds. */
 	uint64_t wanted, drawing, drawn, ready, swapped, saved;

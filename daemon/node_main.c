@@ -119,7 +119,8 @@ static int open_target(struct opened *o, const struct node_options *options,
 
 /*
  * Drivers finish compiling at the first draw, which can take longer than a
- * barrier waits: so the first draw happens before the node joins.
+ * barrier waits: so the first draw happens before the node joins. The light
+ * is left out: the master has all nodes compute it anew when one joins.
  */
 static int warm_up(struct opened *o)
 {
@@ -128,6 +129,7 @@ static int warm_up(struct opened *o)
 
 	render_frame_init(&frame, o->files.scene_file);
 	frame.T_room_head = o->files.layout->start_head;
+	frame.gi_on = false;
 	frame.eye_separation_m = o->files.layout->eye_separation_m;
 	r = renderer_draw(o->renderer, &frame);
 	return r < 0 ? r : renderer_finished(o->renderer, WARM_UP_NS);

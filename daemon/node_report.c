@@ -17,8 +17,15 @@ static void write_wire(struct json *json, const struct node *n)
 	json_u64(json, "datagrams_in", c.datagrams_in);
 	json_u64(json, "repairs", c.repairs);
 	json_u64(json, "send_failed", net.send_failed);
-	json_u64(json, "bad", c.bad_short + c.bad_version + c.bad_auth + c.bad_session +
-				     c.bad_format + c.bad_replay + net.oversized);
+	json_open(json, "bad", '{');
+	json_u64(json, "short", c.bad_short);
+	json_u64(json, "version", c.bad_version);
+	json_u64(json, "auth", c.bad_auth);
+	json_u64(json, "session", c.bad_session);
+	json_u64(json, "format", c.bad_format);
+	json_u64(json, "replay", c.bad_replay);
+	json_u64(json, "oversized", net.oversized);
+	json_close(json, '}');
 	json_close(json, '}');
 }
 
@@ -83,7 +90,8 @@ int node_write_json(const struct node *n, uint64_t pictures_saved, char *text, s
 	json_u64(&json, "refused", c->refused);
 	json_u64(&json, "last_frame", n->swapped);
 	json_u64(&json, "pictures", pictures_saved);
-	json_hash(&json, "state_hash", fdp_node_hash(n->fdp));
+	json_u64(&json, "state_frame", n->state_frame);
+	json_hash(&json, "state_hash", n->state_hash);
 	write_renderer(&json, n);
 	write_wire(&json, n);
 	json_close(&json, '}');

@@ -547,6 +547,12 @@ void fdp_master_leave(struct fdp_master *m, int64_t now_ns)
 				fdp_leave_encode(m->frame, fdp_outbox_body(&m->out), FDP_BODY_MAX));
 }
 
+void fdp_master_set_deadline(struct fdp_master *m, int64_t deadline_ns)
+{
+	if (deadline_ns > 0)
+		m->params.deadline_ns = deadline_ns;
+}
+
 bool fdp_master_idle(const struct fdp_master *m)
 {
 	return !m->underway;

@@ -118,6 +118,11 @@ int fdp_master_receive(struct fdp_master *master, const uint8_t *bytes, size_t l
 void fdp_master_tick(struct fdp_master *master, int64_t now_ns);
 /* When tick wants to be called next; INT64_MAX when nothing is pending. */
 int64_t fdp_master_next(const struct fdp_master *master);
+/*
+ * From the next frame on the barrier waits this long (> 0) instead of
+ * params.deadline_ns: for a frame that is known to cost more than others.
+ */
+void fdp_master_set_deadline(struct fdp_master *master, int64_t deadline_ns);
 /* No frame is under way: begin may be called. */
 bool fdp_master_idle(const struct fdp_master *master);
 size_t fdp_master_live(const struct fdp_master *master);

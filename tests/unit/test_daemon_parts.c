@@ -137,6 +137,13 @@ static void frame_stats_measure_swap_and_skew(void **state)
 
 	(void)state;
 	frame_stats_begin(&s, 1, 7, 100 * MS);
+	frame_stats_applied(&s, 2, 1, 101 * MS);
+	frame_stats_applied(&s, 0, 1, 102 * MS);
+	frame_stats_applied(&s, 1, 1, 103 * MS);
+	frame_stats_applied(&s, 1, 1, 109 * MS);
+	frame_stats_applied(&s, 64, 1, 109 * MS);
+	assert_int_equal(s.applied.count, 1);
+	assert_int_equal(s.applied.max_us, 3000);
 	frame_stats_swap_sent(&s, 1, 110 * MS);
 	assert_int_equal(s.smoothed_swap_ns, 10 * MS);
 	frame_stats_swapped(&s, 1, 1, 5000 * MS, 111 * MS);
@@ -151,6 +158,7 @@ static void frame_stats_measure_swap_and_skew(void **state)
 	assert_int_equal(s.skew.max_us, 2000);
 	assert_int_equal(s.last_swapped.max_us, 14000);
 	assert_int_equal(s.swap_sent.max_us, 10000);
+	assert_int_equal(s.swap_to_last.max_us, 4000);
 	/* A node dies: the frame is whole without it. */
 	frame_stats_swapped(&s, 0, 2, 5010 * MS, 120 * MS);
 	frame_stats_swapped(&s, 1, 2, 5010 * MS, 120 * MS);
