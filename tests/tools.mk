@@ -41,3 +41,12 @@ EXTRA_DIST += \
 	tests/data/bad/unknown-key.cave \
 	tests/data/bad/unknown-method.scene \
 	tests/data/bad/wrong-type.cave
+
+# Caves on loopback, with real daemons on any GL 4.5.
+check_PROGRAMS += tests/loopback/picture
+tests_loopback_picture_SOURCES = tests/loopback/picture.c
+tests_loopback_picture_CFLAGS = $(AM_CFLAGS)
+tests_loopback_picture_LDADD = $(RENDERER_LIBS)
+dist_check_SCRIPTS += tests/loopback/demo.sh tests/loopback/render.sh tests/loopback/window.sh
+TESTS += tests/loopback/demo.sh tests/loopback/render.sh tests/loopback/window.sh
+EXTRA_DIST += tests/loopback/lib.sh tests/data/halves.cave tests/data/loop.scene

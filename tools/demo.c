@@ -179,8 +179,8 @@ static int plan_and_run(struct demo *demo)
 
 int command_demo(int argc, char **argv)
 {
-	struct demo d = { .options = { .out = "grotto-demo", .frames = 120, .deadline_ms = 60000,
-				       .patience_s = 300, .pixels_scale = 1 } };
+	struct demo d = { .options = { .out = "grotto-demo", .frames = 120, .deadline_ms = 600000,
+				       .patience_s = 600, .pixels_scale = 1 } };
 	struct demo_options *o = &d.options;
 	const struct cli_option options[] = {
 		{ "layout", 0, CLI_TEXT, &o->layout, 0, 0, "FILE", "the cave (the shipped four walls)" },
@@ -198,9 +198,9 @@ int command_demo(int argc, char **argv)
 		{ "rate", 0, CLI_REAL, &o->rate_hz, 0.1, 1000, "HZ",
 		  "frames a second in real time; else as fast as all walls can" },
 		{ "deadline-ms", 0, CLI_INT, &o->deadline_ms, 1, 600000, "MS",
-		  "of the swap barrier: later nodes are left out of a swap (60000)" },
+		  "of the swap barrier: later nodes miss the frame (600000)" },
 		{ "patience", 0, CLI_INT, &o->patience_s, 1, 86400, "S",
-		  "give up after so long without a new frame (300)" },
+		  "give up after so long without a new frame (600)" },
 	};
 	const struct cli_table table = {
 		"grotto demo [--layout FILE] [--scene FILE] [--frames N] [--out DIR]",
