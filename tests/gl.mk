@@ -19,3 +19,10 @@ TESTS += tests/unit/test_image
 tests_unit_test_image_SOURCES = tests/unit/test_image.c tests/unit/unit.h tests/unit/shared.h
 tests_unit_test_image_CFLAGS = $(GL_TEST_CFLAGS)
 tests_unit_test_image_LDADD = $(GL_TEST_LIBS)
+
+check_PROGRAMS += tests/unit/test_import
+TESTS += tests/unit/test_import
+tests_unit_test_import_SOURCES = tests/unit/test_import.c tests/unit/unit.h tests/unit/shared.h \
+	tests/unit/glb.h
+tests_unit_test_import_CFLAGS = $(GL_TEST_CFLAGS) $(ASSIMP_CFLAGS) $(JPEG_CFLAGS)
+tests_unit_test_import_LDADD = $(GL_TEST_LIBS)

@@ -8,11 +8,13 @@
 #include "base/cursor.h"
 #include "base/result.h"
 
+#include <errno.h>
 #include <json-c/json.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 #define GLB_MAGIC 0x46546c67u
 #define GLB_JSON 0x4e4f534au
@@ -23,6 +25,7 @@ struct gltf {
 	struct gr_diag *diag;
 	struct json_object *root;
 	size_t binary_len; /* of the GLB's BIN chunk, 0 without one */
+	size_t triangles;
 };
 
 bool gltf_is_name(const char *name)
@@ -170,6 +173,32 @@ static int check_extensions(const struct gltf *g)
 	return result;
 }
 
+/* assimp's own words do not name the file. */
+static int check_companion(const struct gltf *g, const char *uri, size_t len)
+{
+	struct stat status;
+	char *path;
+	int result = GR_OK;
+
+	if (strncmp(uri, "data:", 5) == 0)
+		return GR_OK;
+	path = import_beside(g->path, uri);
+	if (!path)
+		return GR_ERR_NOMEM;
+	if (stat(path, &status) != 0) {
+		gr_diag_add(g->diag, GR_DIAG_ERROR, g->path, 0, "buffers", "%s: %s", path,
+			    strerror(errno));
+		result = GR_ERR_CONFIG;
+	} else if (!S_ISREG(status.st_mode) || (uint64_t)status.st_size < len) {
+		gr_diag_add(g->diag, GR_DIAG_ERROR, g->path, 0, "buffers",
+			    "%s is cut off: %zu bytes are needed, it has %lld", path, len,
+			    (long long)status.st_size);
+		result = GR_ERR_CONFIG;
+	}
+	free(path);
+	return result;
+}
+
 static int check_buffers(const struct gltf *g)
 {
 	size_t buffers, views;
@@ -177,13 +206,18 @@ static int check_buffers(const struct gltf *g)
 	struct json_object *view_list = list(g, "bufferViews", &views);
 
 	for (size_t i = 0; i < buffers; i++) {
-		struct json_object *buffer = json_object_array_get_idx(buffer_list, i);
+		struct json_object *buffer = json_object_array_get_idx(buffer_list, i), *uri;
 		int64_t len = whole(buffer, "byteLength", -1);
+		int result;
 
 		if (len < 0 || (uint64_t)len > IMPORT_MAX_FILE)
 			return fault(g, "buffers", "byteLength is missing or out of range");
-		if (!member(buffer, "uri") && (uint64_t)len > g->binary_len)
+		uri = member(buffer, "uri");
+		if (!uri && (uint64_t)len > g->binary_len)
 			return fault(g, "buffers", "the GLB's binary chunk is shorter than its byteLength");
+		result = uri ? check_companion(g, json_object_get_string(uri), (size_t)len) : GR_OK;
+		if (result != GR_OK)
+			return result;
 	}
 	for (size_t i = 0; i < views; i++) {
 		struct json_object *view = json_object_array_get_idx(view_list, i);
@@ -283,7 +317,15 @@ static bool attribute_ok(struct json_object *accessors, size_t count, struct jso
 	       whole(accessor, "count", -1) == vertices;
 }
 
-static int check_primitive(const struct gltf *g, struct json_object *primitive,
+/* 4 is a list, 5 a strip, 6 a fan of triangles; points and lines have none. */
+static size_t triangle_count(int64_t mode, int64_t corners)
+{
+	if (mode == 4)
+		return (size_t)corners / 3;
+	return (mode == 5 || mode == 6) && corners > 2 ? (size_t)corners - 2 : 0;
+}
+
+static int check_primitive(struct gltf *g, struct json_object *primitive,
 			   struct json_object *accessors, size_t count, size_t materials)
 {
 	struct json_object *attributes = member(primitive, "attributes");
@@ -305,10 +347,13 @@ static int check_primitive(const struct gltf *g, struct json_object *primitive,
 		return fault(g, "meshes", "an attribute is of another type or length than POSITION");
 	if (!is_index(primitive, "indices", count) || !is_index(primitive, "material", materials))
 		return fault(g, "meshes", "indices or material do not exist");
+	if (member(primitive, "indices"))
+		accessor = json_object_array_get_idx(accessors, (size_t)whole(primitive, "indices", 0));
+	g->triangles += triangle_count(whole(primitive, "mode", 4), whole(accessor, "count", 0));
 	return GR_OK;
 }
 
-static int check_meshes(const struct gltf *g)
+static int check_meshes(struct gltf *g)
 {
 	size_t meshes, accessors, materials;
 	struct json_object *mesh_list = list(g, "meshes", &meshes);
@@ -461,6 +506,7 @@ int gltf_read(const uint8_t *bytes, size_t len, const char *path, struct gltf_ex
 		result = check_nodes(&g);
 	if (result == GR_OK)
 		result = read_materials(&g, out);
+	out->triangles = g.triangles;
 	if (g.root)
 		json_object_put(g.root);
 	return result;

@@ -59,6 +59,7 @@ struct gltf_material {
 struct gltf_extra {
 	struct gltf_material *materials; /* in the file's order, which is assimp's */
 	size_t material_count;
+	size_t triangles; /* that the primitives promise, each mesh once */
 };
 
 /* Whether a name ends in .gltf or .glb. */
@@ -93,6 +94,9 @@ int import_geometry(struct import *import);
  * used. GR_ERR_CONFIG with a line in diag when it cannot be had.
  */
 int import_image(struct import *import, const char *name, bool srgb, int *out_index);
+/* A file that a model names, as it can be opened: %20 and backslashes resolved, beside the
+ * model unless absolute. Caller frees; NULL without memory. */
+char *import_beside(const char *model, const char *name);
 /* PNG or JPEG to RGBA; `what` names it in diag. rgba is the caller's to free. */
 int texture_decode(const uint8_t *bytes, size_t len, const char *what, struct scene_image *out,
 		   struct gr_diag *diag, const char *path);

@@ -75,9 +75,25 @@ static void clean_mesh(struct scene *scene, struct aiMesh *mesh)
 	}
 }
 
+/* assimp's glTF reader leaves faces with bad indices out by itself, without a count. */
+static void count_missing(struct import *import, const struct aiScene *from)
+{
+	size_t there = 0;
+
+	for (unsigned m = 0; m < from->mNumMeshes; m++) {
+		if (from->mMeshes[m]->mPrimitiveTypes & aiPrimitiveType_TRIANGLE)
+			there += from->mMeshes[m]->mNumFaces;
+	}
+	if (there < import->gltf->triangles)
+		import->scene->dropped_index += import->gltf->triangles - there;
+}
+
 int import_clean(struct import *import, struct aiScene *from)
 {
 	size_t vertices = 0;
+
+	if (import->gltf)
+		count_missing(import, from);
 
 	for (unsigned m = 0; m < from->mNumMeshes; m++) {
 		struct aiMesh *mesh = from->mMeshes[m];

@@ -38,15 +38,18 @@ static void plain_name(char *name)
 	*to = '\0';
 }
 
-/* name as it can be opened: beside the model unless absolute. Caller frees. */
-static char *beside_model(const char *model, const char *name)
+char *import_beside(const char *model, const char *name)
 {
 	const char *slash = strrchr(model, '/');
 	int folder = slash && name[0] != '/' ? (int)(slash - model) + 1 : 0;
-	char *path = NULL;
+	char *plain = strdup(name), *path = NULL;
 
-	if (asprintf(&path, "%.*s%s", folder, model, name) < 0)
+	if (!plain)
 		return NULL;
+	plain_name(plain);
+	if (asprintf(&path, "%.*s%s", folder, model, plain) < 0)
+		path = NULL;
+	free(plain);
 	return path;
 }
 
@@ -82,7 +85,7 @@ static int decode_embedded(struct import *import, const struct aiTexture *textur
 
 static int decode_external(struct import *import, const char *name, struct scene_image *image)
 {
-	char *path = beside_model(import->path, name);
+	char *path = import_beside(import->path, name);
 	uint8_t *bytes;
 	size_t len;
 	int result;
@@ -160,18 +163,10 @@ int import_image(struct import *import, const char *name, bool srgb, int *out_in
 	image.name = strdup(name);
 	if (!image.name)
 		return GR_ERR_NOMEM;
-	if (inside) {
+	if (inside)
 		result = decode_embedded(import, inside, name, &image);
-	} else {
-		char *plain = strdup(name);
-
-		result = GR_ERR_NOMEM;
-		if (plain) {
-			plain_name(plain);
-			result = decode_external(import, plain, &image);
-			free(plain);
-		}
-	}
+	else
+		result = decode_external(import, name, &image);
 	if (result == GR_OK)
 		result = keep_image(import, &image);
 	if (result != GR_OK) {

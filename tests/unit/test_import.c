@@ -609,9 +609,9 @@ static void test_foreign(void **state)
 		const char *name;
 		size_t triangles;
 	} models[] = {
-		{ "reference/scenes/models/sponza_part.glb", 0 },
-		{ "reference/scenes/models/stanford_bunny_lowres.glb", 0 },
-		{ "reference/scenes/models/stanford_dragon_res3.glb", 0 },
+		{ "reference/scenes/models/sponza_part.glb", 33663 },
+		{ "reference/scenes/models/stanford_bunny_lowres.glb", 3674 },
+		{ "reference/scenes/models/stanford_dragon_res3.glb", 46540 },
 		{ "reference/scenes/characters/CesiumMan/CesiumMan.gltf", 4672 },
 		{ "reference/scenes/characters/RiggedFigure/RiggedFigure.gltf", 256 },
 		{ "reference/renders/a_cornell/scene.glb", 38 },
