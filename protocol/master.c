@@ -60,6 +60,13 @@ static void remember_hash(struct fdp_master *m)
 	m->hash_frames[m->frame % FDP_HASH_RING] = m->frame;
 }
 
+static int64_t default_probe(int64_t deadline_ns)
+{
+	const int64_t ns = deadline_ns / 8;
+
+	return ns < 1 ? 1 : ns < FDP_PROBE_MOST_NS ? ns : FDP_PROBE_MOST_NS;
+}
+
 int fdp_master_create(struct fdp_master **out, const struct fdp_master_params *params,
 		      const struct fdp_master_ops *ops)
 {
@@ -77,7 +84,7 @@ int fdp_master_create(struct fdp_master **out, const struct fdp_master_params *p
 	for (size_t i = 0; i < params->node_count; i++)
 		strcpy(m->names[i], params->node_names[i]);
 	if (!m->params.probe_ns)
-		m->params.probe_ns = params->deadline_ns / 8 > 0 ? params->deadline_ns / 8 : 1;
+		m->params.probe_ns = default_probe(params->deadline_ns);
 	m->ops = *ops;
 	m->gate = (struct fdp_gate){
 		.key = m->params.key,
@@ -244,6 +251,7 @@ int fdp_master_begin(struct fdp_master *m, const struct param_state *state, uint
 	m->underway = true;
 	fdp_barrier_start(&m->barrier, frame, live, now_ns, m->params.deadline_ns);
 	m->probe_at = now_ns + m->params.probe_ns;
+	m->probes = 0;
 	fdp_master_begin_repairs(m);
 	if (live) {
 		fdp_master_write_state(m, &m->delta, FDP_DELTA, common_base(m, live));
@@ -507,7 +515,7 @@ void fdp_master_tick(struct fdp_master *m, int64_t now_ns)
 	if (now_ns >= m->probe_at && now_ns < m->barrier.deadline_ns) {
 		const uint64_t unacked = fdp_barrier_unacked(&m->barrier);
 
-		m->probe_at = now_ns + m->params.probe_ns;
+		m->probe_at = now_ns + fdp_backoff(m->params.probe_ns, ++m->probes);
 		if (unacked)
 			fdp_master_announce_to(m, unacked, FDP_PROBE);
 	}

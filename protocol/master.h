@@ -59,13 +59,14 @@ struct fdp_master_params {
 	size_t node_count;
 	size_t datagram_max; /* UDP payload bytes: MTU less IP and UDP headers */
 	int64_t deadline_ns; /* of the barrier, from fdp_master_begin */
-	int64_t probe_ns;    /* ask who has not acknowledged after this; 0: deadline/8 */
+	int64_t probe_ns;    /* ask who has not acknowledged after this; 0: deadline/8, 5 ms at most */
 	unsigned evict_frames;
 	bool multicast; /* FDP_TO_ALL is one send on the wire, not one a node */
 };
 
 struct fdp_master_ops {
 	/*
+	 * Neither may call back into the master.
 	 * One datagram to node `to`, or to all nodes for FDP_TO_ALL. Where the
 	 * node's address is not the layout's, the caller has the last source
 	 * address it heard an authenticated datagram from.
@@ -111,7 +112,8 @@ int fdp_master_begin(struct fdp_master *master, const struct param_state *state,
 		     int64_t now_ns);
 /*
  * A datagram that arrived. Returns the node it is authentically from (>= 0),
- * or a negative result; everything bad is counted and dropped.
+ * or a negative result; everything bad is counted and dropped. What is sent to
+ * that node during the call answers it: to the address that it came from.
  */
 int fdp_master_receive(struct fdp_master *master, const uint8_t *bytes, size_t len, int64_t now_ns);
 /* Does what time asks for: probes, deadline, evictions. */

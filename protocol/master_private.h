@@ -14,6 +14,7 @@
 #include "protocol/state.h"
 
 #define FDP_HASH_RING 64 /* frames whose hash an ACK may still name */
+#define FDP_PROBE_MOST_NS INT64_C(5000000) /* a long deadline is no reason to repair slowly */
 #define FDP_KEEPALIVE_NS INT64_C(250000000)
 #define FDP_JOIN_SILENCE_NS INT64_C(2000000000)
 #define FDP_REFUSED_AGAIN_NS INT64_C(60000000000) /* a repeated reason is told once in this time */
@@ -64,6 +65,7 @@ struct fdp_master {
 	uint64_t repair_budget;                 /* bytes left in this frame */
 	unsigned loss;
 	int64_t probe_at, keepalive_at;
+	unsigned probes; /* in this frame */
 };
 
 /* Bit sets over the peers. */

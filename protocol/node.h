@@ -48,7 +48,7 @@ struct fdp_node_params {
 	int64_t silence_ns; /* master counts as lost after this; 0: 2 s */
 };
 
-struct fdp_node_ops {
+struct fdp_node_ops { /* neither may call back into the node */
 	void (*send)(void *ctx, const uint8_t *bytes, size_t len); /* to the master */
 	void (*event)(void *ctx, const struct fdp_node_event *event);
 	void *ctx;

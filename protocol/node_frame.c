@@ -253,8 +253,10 @@ void fdp_node_frame_tick(struct fdp_node *n, int64_t now_ns)
 {
 	/* READY or SWAP may be lost: either way, saying READY again brings the SWAP. */
 	if (n->current.ready && !n->current.swapped &&
-	    now_ns - n->current.asked_ns >= n->retry_ns)
+	    now_ns - n->current.asked_ns >= fdp_backoff(n->retry_ns, n->current.asks)) {
+		n->current.asks++;
 		send_ready(n, now_ns);
+	}
 	if (fdp_reassembly_open(&n->delta) && now_ns - n->nacked_ns >= n->retry_ns)
 		nack_missing(n, &n->delta, now_ns);
 }
@@ -264,7 +266,7 @@ int64_t fdp_node_frame_next(const struct fdp_node *n)
 	int64_t next = INT64_MAX;
 
 	if (n->current.ready && !n->current.swapped)
-		next = n->current.asked_ns + n->retry_ns;
+		next = n->current.asked_ns + fdp_backoff(n->retry_ns, n->current.asks);
 	if (fdp_reassembly_open(&n->delta) && n->nacked_ns + n->retry_ns < next)
 		next = n->nacked_ns + n->retry_ns;
 	return next;

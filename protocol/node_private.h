@@ -22,6 +22,7 @@ struct fdp_node_frame {
 	bool swapped;      /* FDP_NODE_SWAP was said for it */
 	uint32_t render_us;
 	int64_t asked_ns;  /* READY last sent */
+	unsigned asks;     /* repeats of it */
 };
 
 struct fdp_node {

@@ -72,6 +72,11 @@ bool fdp_wire_authentic(const uint8_t key[FDP_KEY_BYTES], const uint8_t *bytes, 
 	return !sodium_memcmp(mac, bytes + FDP_MAC_AT, FDP_MAC_BYTES);
 }
 
+void fdp_wire_sign(const uint8_t key[FDP_KEY_BYTES], uint8_t *bytes, size_t len)
+{
+	compute_mac(key, bytes, len, bytes + FDP_MAC_AT);
+}
+
 void fdp_wire_seal(const struct fdp_header *header, const uint8_t key[FDP_KEY_BYTES],
 		   uint8_t *bytes)
 {
@@ -91,8 +96,7 @@ void fdp_wire_seal(const struct fdp_header *header, const uint8_t key[FDP_KEY_BY
 	gr_write_u64(&w, header->message);
 	gr_write_u32(&w, header->message_len);
 	gr_write_u32(&w, header->plain_len);
-	compute_mac(key, bytes, (size_t)FDP_HEADER_BYTES + header->payload_len,
-		    bytes + FDP_MAC_AT);
+	fdp_wire_sign(key, bytes, (size_t)FDP_HEADER_BYTES + header->payload_len);
 }
 
 /* Everything after magic and version; false when a reserved bit is set. */

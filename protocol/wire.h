@@ -23,6 +23,18 @@
 #define FDP_DATAGRAM_MAX 65507 /* what UDP over IPv4 can hold */
 #define FDP_MESSAGE_MAX 65536
 #define FDP_FRAGMENTS_MAX 512
+/*
+ * What is asked again within a frame is asked every probe interval, as often
+ * as a deadline of the usual length has them; then ever more rarely, down to
+ * 16 intervals, so that a room that waits for a slow wall is quiet.
+ */
+#define FDP_STEADY_ASKS 8
+static inline int64_t fdp_backoff(int64_t interval_ns, unsigned times)
+{
+	const unsigned more = times > FDP_STEADY_ASKS ? times - FDP_STEADY_ASKS : 0;
+
+	return interval_ns << (more < 4 ? more : 4);
+}
 
 enum fdp_kind {
 	FDP_JOIN = 1, /* node: may I? and again with the challenge: I am here */
@@ -90,6 +102,8 @@ enum fdp_verdict fdp_gate_open(const struct fdp_gate *gate, const uint8_t *bytes
 /* Writes header and MAC before a payload that stands at bytes + FDP_HEADER_BYTES. */
 void fdp_wire_seal(const struct fdp_header *header, const uint8_t key[FDP_KEY_BYTES],
 		   uint8_t *bytes);
+/* Puts the MAC of what stands there into a datagram of at least FDP_HEADER_BYTES. */
+void fdp_wire_sign(const uint8_t key[FDP_KEY_BYTES], uint8_t *bytes, size_t len);
 /* Constant-time comparison of the MAC in a datagram of at least FDP_HEADER_BYTES. */
 bool fdp_wire_authentic(const uint8_t key[FDP_KEY_BYTES], const uint8_t *bytes, size_t len);
 const char *fdp_kind_name(enum fdp_kind kind);

@@ -35,3 +35,41 @@ tests_unit_test_peer_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_wire_SOURCES = tests/unit/test_wire.c tests/unit/unit.h
 tests_unit_test_wire_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_wire_LDADD = $(PROTOCOL_TEST_LDADD)
+
+# Fuzzers: ./configure --enable-fuzzers CC=clang, then for example
+#   make tests/fuzz/fuzz_delta && tests/fuzz/fuzz_delta -max_total_time=60 CORPUS
+# where CORPUS is a copy of tests/fuzz/corpus/delta. What crashes stays there.
+EXTRA_DIST += \
+	tests/fuzz/fuzz_datagram_master.c tests/fuzz/fuzz_datagram_node.c \
+	tests/fuzz/fuzz_delta.c tests/fuzz/fuzz_key.c tests/fuzz/fuzz_pair.h \
+	tests/fuzz/corpus/datagram/ack \
+	tests/fuzz/corpus/datagram/announce \
+	tests/fuzz/corpus/datagram/join \
+	tests/fuzz/corpus/datagram/nack \
+	tests/fuzz/corpus/datagram/snapshot \
+	tests/fuzz/corpus/datagram/welcome \
+	tests/fuzz/corpus/delta/empty \
+	tests/fuzz/corpus/delta/two \
+	tests/fuzz/corpus/key/good \
+	tests/fuzz/corpus/key/short
+
+if FUZZERS
+noinst_PROGRAMS += tests/fuzz/fuzz_datagram_master tests/fuzz/fuzz_datagram_node \
+	tests/fuzz/fuzz_delta tests/fuzz/fuzz_key
+tests_fuzz_fuzz_datagram_master_SOURCES = tests/fuzz/fuzz_datagram_master.c
+tests_fuzz_fuzz_datagram_master_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_fuzz_fuzz_datagram_master_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_datagram_master_LDADD = $(PROTOCOL_LIBS)
+tests_fuzz_fuzz_datagram_node_SOURCES = tests/fuzz/fuzz_datagram_node.c
+tests_fuzz_fuzz_datagram_node_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_fuzz_fuzz_datagram_node_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_datagram_node_LDADD = $(PROTOCOL_LIBS)
+tests_fuzz_fuzz_delta_SOURCES = tests/fuzz/fuzz_delta.c
+tests_fuzz_fuzz_delta_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_fuzz_fuzz_delta_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_delta_LDADD = $(PROTOCOL_LIBS)
+tests_fuzz_fuzz_key_SOURCES = tests/fuzz/fuzz_key.c
+tests_fuzz_fuzz_key_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_fuzz_fuzz_key_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_key_LDADD = $(PROTOCOL_LIBS)
+endif
