@@ -28,3 +28,14 @@ tests_unit_test_master_state_SOURCES = tests/unit/test_master_state.c tests/unit
 tests_unit_test_master_state_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_master_state_LDADD = daemon/libgdaemon.a $(PROTOCOL_LIBS) $(RENDERER_LIBS) \
 	$(CMOCKA_LIBS)
+
+# Real daemons over UDP on loopback; they skip (77) where there is no OpenGL 4.5.
+check_PROGRAMS += tests/loopback/ask tests/loopback/stranger
+tests_loopback_ask_SOURCES = tests/loopback/ask.c
+tests_loopback_stranger_SOURCES = tests/loopback/stranger.c tests/unit/unit.h
+tests_loopback_stranger_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
+tests_loopback_stranger_LDADD = $(PROTOCOL_LIBS)
+
+dist_check_SCRIPTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh
+TESTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh
+EXTRA_DIST += tests/loopback/room.sh tests/loopback/room.cave.in tests/loopback/cell.scene
