@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MAX_RAYS 256
+#define MAX_RAYS 128
 
 /*
  * Cells' points stand off the middle by an odd thousandth of a cell: walls on
@@ -222,9 +222,9 @@ static uint8_t link_through(const struct build *b, const int cell[3], int j,
 
 	if (j < SECTOR_COUNT / 2 && lattice_inside(l, x, y, z)) {
 		surface = b->links->surface_of[lattice_index(l, x, y, z)];
-		return surface ? b->links->surfaces[surface - 1].through[SECTOR_COUNT - 1 - j] : 255;
+		return surface ? b->links->surfaces[surface - 1].through[SECTOR_COUNT - 1 - j] : LINK_OPEN;
 	}
-	return (uint8_t)((mine->free * 255 + b->rays_per_link / 2) / b->rays_per_link);
+	return (uint8_t)((mine->free * LINK_OPEN + b->rays_per_link / 2) / b->rays_per_link);
 }
 
 static int push_block(struct build *b, const struct link_block *block)
@@ -255,15 +255,15 @@ static int build_cell(struct build *b, const int cell[3], struct link_surface *o
 		float scale;
 		int result;
 
-		out->through[j] = 255;
+		out->through[j] = LINK_OPEN;
 		if (!link_crowded(b, cell, sector_offset[j]))
 			continue;
 		sample_link(b, cell, j, &s);
 		out->through[j] = link_through(b, cell, j, &s);
-		if (out->through[j] == 255)
+		if (out->through[j] == LINK_OPEN)
 			continue;
 		*out_any = true;
-		s.block.blocked = 1.0f - (float)out->through[j] / 255.0f;
+		s.block.blocked = 1.0f - (float)out->through[j] / (float)LINK_OPEN;
 		/* the reflected share follows the rounded transmittance: nothing is made or lost */
 		scale = s.free == b->rays_per_link ? 0.0f :
 			s.block.blocked * (float)b->rays_per_link / (float)(b->rays_per_link - s.free);

@@ -25,6 +25,9 @@
 
 #include <stdint.h>
 
+/* Transmittance of an open link; a power of two, so that the shader's scale is exact. */
+#define LINK_OPEN 128
+
 /* One stopped link: Phi_j of the cell gives flux reflect * Phi_j back to it. */
 struct link_block {
 	float reflect[3]; /* (1 - transmittance) * reflectance, per band */
@@ -35,7 +38,7 @@ struct link_block {
 
 /* A cell with at least one link that is not open. */
 struct link_surface {
-	uint8_t through[28]; /* transmittance * 255 of direction j; two unused */
+	uint8_t through[28]; /* transmittance * LINK_OPEN of direction j; two unused */
 	uint32_t first, count; /* its blocks */
 };
 
@@ -55,7 +58,7 @@ struct links {
 };
 
 /*
- * rays_per_link 1..256. albedo_override: components >= 0 replace the
+ * rays_per_link 1..128. albedo_override: components >= 0 replace the
  * materials' diffuse reflectance. GR_OK or GR_ERR_NOMEM.
  *
  * settle_steps: light loses all but `reflectance` every hops_per_bounce steps;

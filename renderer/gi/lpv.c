@@ -96,27 +96,31 @@ void lpv_propagate(struct lpv *lpv, int steps)
 {
 	const int *size = lpv->lattice.size;
 
+	if (steps <= 0)
+		return;
+	lpv->current = !lpv->current;
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_INJECT, lpv->inject);
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_BLOCKS, lpv->blocks);
-	glUseProgram(lpv->step);
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_NEW_LIGHT, lpv->light[lpv->current]);
 	for (int i = 0; i < steps; i++) {
-		glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_LIGHT,
-				 lpv->light[lpv->current]);
+		glUseProgram(i == steps - 1 ? lpv->last_step : lpv->step);
+		glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_SENT, lpv->sent[lpv->sending]);
 		glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_NEXT,
-				 lpv->light[!lpv->current]);
+				 lpv->sent[!lpv->sending]);
 		glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 		glDispatchCompute(((unsigned)size[0] + 7) / 8, ((unsigned)size[1] + 3) / 4,
-				  (unsigned)size[2]);
-		lpv->current = !lpv->current;
+				  ((unsigned)size[2] + LPV_SEGMENT - 1) / LPV_SEGMENT);
+		lpv->sending = !lpv->sending;
 	}
 	glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 static void go_dark(struct lpv *lpv)
 {
-	for (int i = 0; i < 2; i++)
-		glClearNamedBufferData(lpv->light[i], GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT,
-				       NULL);
+	const unsigned buffers[4] = { lpv->light[0], lpv->light[1], lpv->sent[0], lpv->sent[1] };
+
+	for (int i = 0; i < 4; i++)
+		glClearNamedBufferData(buffers[i], GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
 }
 
 static int update(struct gi_method *method, const struct render_frame *frame,
@@ -199,8 +203,10 @@ static void destroy(struct gi_method *method)
 	lpv_splat_finish(lpv);
 	lpv_check_finish(lpv);
 	program_destroy(&lpv->step);
+	program_destroy(&lpv->last_step);
 	glDeleteBuffers(1, &lpv->block);
 	glDeleteBuffers(2, lpv->light);
+	glDeleteBuffers(2, lpv->sent);
 	glDeleteBuffers(1, &lpv->surface_of);
 	glDeleteBuffers(1, &lpv->surfaces);
 	glDeleteBuffers(1, &lpv->inject);
@@ -219,23 +225,43 @@ static const struct gi_method_ops repaired_ops = {
 	.destroy = destroy,
 };
 
+static int create_step(struct lpv *lpv)
+{
+	const int *size = lpv->lattice.size;
+	char defines[256];
+	int result;
+
+	snprintf(defines, sizeof defines,
+		 "#define LATTICE_X %d\n#define LATTICE_Y %d\n#define LATTICE_Z %d\n#define SEGMENT %d\n",
+		 size[0], size[1], size[2], LPV_SEGMENT);
+	result = program_create_compute(&lpv->step, "lpv_step.comp", defines);
+	if (result != GR_OK)
+		return result;
+	strcat(defines, "#define WITH_LOOK\n");
+	return program_create_compute(&lpv->last_step, "lpv_step.comp", defines);
+}
+
 static int create_gl(struct lpv *lpv, const struct links *links)
 {
+	const int *size = lpv->lattice.size;
 	size_t cells = lattice_cells(&lpv->lattice);
+	size_t bordered = (size_t)(size[0] + 2) * (size_t)(size[1] + 2) * (size_t)(size[2] + 2);
 	int result = dispatch_plan(cells, 64, &lpv->per_cell);
 
 	if (result == GR_OK)
 		result = upload_links(lpv, links);
 	if (result == GR_OK)
-		result = program_create_compute(&lpv->step, "lpv_step.comp", NULL);
+		result = create_step(lpv);
 	if (result == GR_OK)
 		result = lpv_splat_init(lpv);
 	if (result == GR_OK)
 		result = lpv_check_init(lpv);
 	if (result != GR_OK)
 		return result;
-	for (int i = 0; i < 2; i++)
+	for (int i = 0; i < 2; i++) {
 		lpv->light[i] = storage(cells * LPV_LIGHT_FLOATS * sizeof(float), NULL);
+		lpv->sent[i] = storage(bordered * LPV_LIGHT_FLOATS * sizeof(float), NULL);
+	}
 	lpv->inject = storage(cells * 12 * sizeof(float), NULL);
 	glCreateBuffers(1, &lpv->block);
 	glNamedBufferStorage(lpv->block, sizeof(struct lattice_block), NULL,

@@ -97,7 +97,7 @@ static void spread_cell(struct lpv_cpu *lpv, int x, int y, int z)
 		for (int j = 0; j < SECTOR_COUNT; j++) {
 			int to[3] = { x + sector_offset[j][0], y + sector_offset[j][1],
 				      z + sector_offset[j][2] };
-			float through = surface ? (float)surface->through[j] / 255.0f : 1.0f;
+			float through = surface ? (float)surface->through[j] / (float)LINK_OPEN : 1.0f;
 			float axis[3];
 
 			if (lpv->periodic)
@@ -222,7 +222,7 @@ void lpv_cpu_irradiance(const struct lpv_cpu *lpv, const float position[3],
 		for (int i = 0; i < 3; i++)
 			w *= o[i] ? t[i] : 1 - t[i];
 		if (!self && surface)
-			w *= (float)surface->through[direction_index(step[0], step[1], step[2])] / 255.0f;
+			w *= (float)surface->through[direction_index(step[0], step[1], step[2])] / (float)LINK_OPEN;
 		if (!self && !in_front(lpv, cell, position, normal))
 			w = 0;
 		weights += w;

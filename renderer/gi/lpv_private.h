@@ -19,7 +19,9 @@ enum lpv_binding {
 	LPV_BINDING_INJECT = 11,
 	LPV_BINDING_BLOCKS = 12,
 	LPV_BINDING_NEXT = 13,
-	LPV_BINDING_SPLAT = 14,
+	LPV_BINDING_SENT = 14,
+	LPV_BINDING_NEW_LIGHT = 15,
+	LPV_BINDING_SPLAT = 14, /* in other programs */
 	LPV_BINDING_CHECK = 15,
 };
 #define LPV_RSM_UNIT 8 /* three */
@@ -33,7 +35,8 @@ struct lattice_block {
 	float point[4];
 };
 
-#define LPV_LIGHT_FLOATS 16 /* a cell in the light buffers */
+#define LPV_LIGHT_FLOATS 12 /* a cell in the light buffers: F, V of three bands */
+#define LPV_SEGMENT 16	    /* cells that an invocation walks up */
 #define LPV_RING 4          /* frames until a check is read back */
 
 struct lpv_check {
@@ -49,9 +52,12 @@ struct lpv {
 	int settle_steps;
 	char description[256];
 
-	unsigned step, splat_peak, splat_sum, splat_resolve, check; /* programs */
-	unsigned block, light[2], surface_of, surfaces, inject, blocks, splat, checks;
-	int current; /* light[current] is the newest */
+	unsigned step, last_step, splat_peak, splat_sum, splat_resolve, check; /* programs */
+	unsigned block, surface_of, surfaces, inject, blocks, splat, checks;
+	unsigned light[2]; /* after the last step of a frame; light[current] is the newest */
+	int current;
+	unsigned sent[2]; /* with a border of one dark cell, scaled by the clamp */
+	int sending;      /* sent[sending] is the newest */
 	struct dispatch per_cell;
 
 	/* What the light stands for. */
@@ -68,6 +74,7 @@ struct lpv {
 	uint64_t nonfinite_frames;
 };
 
+/* Steps from the newest light; 0 changes nothing. */
 void lpv_propagate(struct lpv *lpv, int steps);
 
 /* lpv_splat.c: light of the maps into lpv->inject. */

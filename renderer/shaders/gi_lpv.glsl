@@ -13,7 +13,7 @@ float gi_link_through(uint surface, ivec3 offset)
 
 	j -= j > 13 ? 1 : 0;
 	uint word = surfaces[(surface - 1u) * 8u + uint(j >> 2)];
-	return float((word >> (8 * (j & 3))) & 255u) * (1.0 / 255.0);
+	return float((word >> (8 * (j & 3))) & 255u) * (1.0 / 128.0);
 }
 
 vec3 gi_irradiance(vec3 position, vec3 normal)
@@ -47,7 +47,7 @@ vec3 gi_irradiance(vec3 position, vec3 normal)
 			if (w <= 0.0)
 				continue;
 		}
-		int i = 4 * lattice_index(cell);
+		int i = 3 * lattice_index(cell);
 		red += w * light[i];
 		green += w * light[i + 1];
 		blue += w * light[i + 2];

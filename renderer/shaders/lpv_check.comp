@@ -28,10 +28,10 @@ void main()
 		float change = 0.0, largest = 0.0;
 
 		for (uint c = 0u; c < 3u; c++) {
-			vec4 now = light[4u * cell + c];
+			vec4 now = light[3u * cell + c];
 
 			bad = bad || any(isnan(now)) || any(isinf(now));
-			vec4 moved = abs(now - before[4u * cell + c]);
+			vec4 moved = abs(now - before[3u * cell + c]);
 			change = max(change, max(max(moved.x, moved.y), max(moved.z, moved.w)));
 			largest = max(largest, abs(now.x));
 		}

@@ -10,11 +10,11 @@ layout(std140, binding = 8) uniform LatticeBlock {
 	vec4 point;       // xyz: the point that stands for a cell, in cells from its lower corner
 } lattice;
 
-// Per cell four vec4: F, V of red, of green, of blue; the clamp's factors.
+// Per cell three vec4: F, V of red, of green, of blue [W].
 layout(std430, binding = 8) readonly buffer LightBuffer { vec4 light[]; };
 // Per cell: 0 where all links are open, else index + 1 of its surface record.
 layout(std430, binding = 9) readonly buffer SurfaceOfBuffer { uint surface_of[]; };
-// Eight words: 26 bytes of transmittance; word 7: first block, their number from bit 27 on.
+// Eight words: 26 bytes of transmittance in 1/128; word 7: first block, their number from bit 27 on.
 layout(std430, binding = 10) readonly buffer SurfaceBuffer { uint surfaces[]; };
 
 bool lattice_inside(ivec3 cell)
