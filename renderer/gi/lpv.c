@@ -76,7 +76,7 @@ static void upload_block(struct lpv *lpv)
 		block.sector_mu[k] = (float)s->mu[k];
 	}
 	block.sector_a[3] = (float)(3 * medium.a[0] + 6 * medium.a[1] + 4 * medium.a[2]);
-	block.sector_mu[3] = (float)s->lobe;
+	block.sector_mu[3] = lpv->is_thesis ? 1.0f : (float)s->lobe; /* it makes its own of F n */
 	block.look[0] = (float)(scale * s->look_f * 0.25);
 	block.look[1] = (float)(scale * s->look_v * 0.5);
 	glNamedBufferSubData(lpv->block, 0, sizeof block, &block);
@@ -96,14 +96,17 @@ void lpv_propagate(struct lpv *lpv, int steps)
 {
 	const int *size = lpv->lattice.size;
 
-	if (steps <= 0)
-		return;
-	lpv->current = !lpv->current;
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_INJECT, lpv->inject);
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_BLOCKS, lpv->blocks);
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_NEW_LIGHT, lpv->light[lpv->current]);
 	for (int i = 0; i < steps; i++) {
-		glUseProgram(i == steps - 1 ? lpv->last_step : lpv->step);
+		bool look = i >= steps - 2; /* the check compares the last two */
+
+		if (look) {
+			lpv->current = !lpv->current;
+			glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_NEW_LIGHT,
+					 lpv->light[lpv->current]);
+		}
+		glUseProgram(look ? lpv->last_step : lpv->step);
 		glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_SENT, lpv->sent[lpv->sending]);
 		glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_NEXT,
 				 lpv->sent[!lpv->sending]);
@@ -121,6 +124,24 @@ static void go_dark(struct lpv *lpv)
 
 	for (int i = 0; i < 4; i++)
 		glClearNamedBufferData(buffers[i], GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
+}
+
+/*
+ * Equation 3.4. The thesis divides by the last frame's energy; where that is
+ * nothing (a lamp has just been switched on) there is nothing to keep either.
+ */
+static void thesis_frame(struct lpv *lpv, const struct render_frame *frame, bool restart, int steps)
+{
+	float energy = 0, last = 0;
+	float incremental = fminf(fmaxf(frame->gi_incremental, 0), 1);
+
+	for (int i = 0; i < SCENE_MAX_LAMPS; i++)
+		for (int c = 0; c < 3 && frame->lamps[i].on; c++)
+			energy += frame->lamps[i].intensity[c];
+	if (!restart && lpv->thesis.energy > 0)
+		last = energy / lpv->thesis.energy * incremental;
+	lpv->thesis.energy = energy;
+	lpv_thesis_frame(lpv, last, last > 0 ? 1 - incremental : 1, steps);
 }
 
 static int update(struct gi_method *method, const struct render_frame *frame,
@@ -150,11 +171,15 @@ static int update(struct gi_method *method, const struct render_frame *frame,
 	bind(method);
 	if (lamps)
 		lpv_splat(lpv, rsm);
-	if (restart) {
+	if (restart)
 		go_dark(lpv);
-		steps = lpv->settle_steps;
+	if (lpv->is_thesis) {
+		thesis_frame(lpv, frame, restart, steps);
+	} else {
+		if (restart)
+			steps = lpv->settle_steps;
+		lpv_propagate(lpv, steps);
 	}
-	lpv_propagate(lpv, steps);
 	lpv_check_submit(lpv);
 	lpv->started = true;
 	lpv->epoch = frame->gi_epoch;
@@ -200,6 +225,8 @@ static void destroy(struct gi_method *method)
 {
 	struct lpv *lpv = lpv_of(method);
 
+	if (lpv->is_thesis)
+		lpv_thesis_finish(&lpv->thesis);
 	lpv_splat_finish(lpv);
 	lpv_check_finish(lpv);
 	program_destroy(&lpv->step);
@@ -220,6 +247,17 @@ static const struct gi_method_ops repaired_ops = {
 	.update = update,
 	.bind = bind,
 	.shader_name = "gi_lpv.glsl",
+	.stats = stats,
+	.hash = hash,
+	.destroy = destroy,
+};
+
+static const struct gi_method_ops thesis_ops = {
+	.name = "lpv (thesis)",
+	.describe = describe,
+	.update = update,
+	.bind = bind,
+	.shader_name = "gi_lpv_thesis.glsl",
 	.stats = stats,
 	.hash = hash,
 	.destroy = destroy,
@@ -275,9 +313,10 @@ static void say(struct lpv *lpv, const struct links *links, const struct scene_f
 	const int *size = lpv->lattice.size;
 
 	snprintf(lpv->description, sizeof lpv->description,
-		 "light propagation volumes, %d x %d x %d cells of %.3g m, %d steps a frame: diffuse "
+		 "light propagation volumes%s, %d x %d x %d cells of %.3g m, %d steps a frame: diffuse "
 		 "light between surfaces; %zu cells meet surfaces (%zu rays, once), steady after %d steps",
-		 size[0], size[1], size[2], (double)lpv->lattice.d, file->gi.steps,
+		 lpv->is_thesis ? " (thesis scheme)" : "", size[0], size[1], size[2],
+		 (double)lpv->lattice.d, file->gi.steps,
 		 links->surface_count, links->rays, lpv->settle_steps);
 }
 
@@ -292,7 +331,8 @@ int gi_lpv_create(struct gi_method **out, const struct scene *scene,
 	*out = NULL;
 	if (!lpv)
 		return result;
-	lpv->base.ops = &repaired_ops;
+	lpv->is_thesis = file->gi.lpv_mode == SCENE_LPV_THESIS;
+	lpv->base.ops = lpv->is_thesis ? &thesis_ops : &repaired_ops;
 	result = lattice_init(&lpv->lattice, scene->min, scene->max, file->gi.lattice);
 	if (result != GR_OK) {
 		gr_error("light lattice: %d cells over a scene of %g x %g x %g m cannot be", file->gi.lattice,
@@ -316,6 +356,11 @@ int gi_lpv_create(struct gi_method **out, const struct scene *scene,
 	result = create_gl(lpv, links);
 	if (result != GR_OK)
 		goto out;
+	if (lpv->is_thesis) {
+		result = lpv_thesis_init(&lpv->thesis, &lpv->lattice, scene);
+		if (result != GR_OK)
+			goto out;
+	}
 	say(lpv, links, file);
 	*out = &lpv->base;
 	lpv = NULL;

@@ -43,8 +43,19 @@ struct lpv_check {
 	uint32_t nonfinite, change, largest, bad_texels;
 };
 
+/* Seed 004's own scheme, for comparison (lpv_thesis.c). */
+struct lpv_thesis {
+	unsigned start, step, store; /* programs */
+	unsigned images[7];	     /* red, green, blue twice; blockers */
+	unsigned table;
+	int newest;   /* 0 or 1: which three */
+	float energy; /* of the last frame's lamps (section 3.4) */
+};
+
 struct lpv {
 	struct gi_method base;
+	bool is_thesis;
+	struct lpv_thesis thesis;
 	struct lattice lattice;
 	struct sectors sectors;
 	float point[3]; /* see struct links */
@@ -76,6 +87,16 @@ struct lpv {
 
 /* Steps from the newest light; 0 changes nothing. */
 void lpv_propagate(struct lpv *lpv, int steps);
+
+/* lpv_thesis.c */
+int lpv_thesis_init(struct lpv_thesis *thesis, const struct lattice *lattice,
+		    const struct scene *scene);
+void lpv_thesis_finish(struct lpv_thesis *thesis);
+/* Equation 3.4, then steps, then the light to lpv->light[lpv->current]. */
+void lpv_thesis_frame(struct lpv *lpv, float last_share, float this_share, int steps);
+/* Only steps; for the benchmark. */
+void lpv_thesis_steps(struct lpv_thesis *thesis, const struct lattice *lattice, float absorption,
+		      float scattering, int steps);
 
 /* lpv_splat.c: light of the maps into lpv->inject. */
 int lpv_splat_init(struct lpv *lpv);
