@@ -13,7 +13,7 @@ RENDERER_SOURCES += \
 
 SHADERS += \
 	renderer/shaders/gi_lpv.glsl renderer/shaders/gi_probe.comp renderer/shaders/gi_lpv_thesis.glsl renderer/shaders/lpv_check.comp \
-	renderer/shaders/lpv_lattice.glsl renderer/shaders/lpv_splat.glsl \
+	renderer/shaders/lpv_lattice.glsl renderer/shaders/lpv_reflect.comp renderer/shaders/lpv_splat.glsl \
 	renderer/shaders/lpv_splat_peak.comp renderer/shaders/lpv_splat_resolve.comp \
 	renderer/shaders/lpv_splat_sum.comp renderer/shaders/lpv_step.comp \
 	renderer/shaders/lpv_thesis_start.comp renderer/shaders/lpv_thesis_step.comp \

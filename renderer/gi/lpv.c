@@ -22,39 +22,70 @@ static const struct lpv *lpv_of_const(const struct gi_method *method)
 	return (const struct lpv *)method;
 }
 
-static unsigned storage(size_t bytes, const void *data)
-{
-	unsigned buffer;
+/* Buffers are written as storage and read as textures, uploaded and read back. */
+static const GLbitfield barriers = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+				   GL_BUFFER_UPDATE_BARRIER_BIT;
 
-	glCreateBuffers(1, &buffer);
-	glNamedBufferStorage(buffer, (GLsizeiptr)(bytes ? bytes : 16), bytes ? data : NULL, 0);
+static struct lpv_buffer storage(GLenum format, size_t bytes, const void *data)
+{
+	struct lpv_buffer b;
+
+	glCreateBuffers(1, &b.buffer);
+	glNamedBufferStorage(b.buffer, (GLsizeiptr)(bytes ? bytes : 16), bytes ? data : NULL, 0);
 	if (!data)
-		glClearNamedBufferData(buffer, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
-	return buffer;
+		glClearNamedBufferData(b.buffer, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
+	glCreateTextures(GL_TEXTURE_BUFFER, 1, &b.texture);
+	glTextureBuffer(b.texture, format, b.buffer);
+	return b;
+}
+
+static void storage_finish(struct lpv_buffer *b)
+{
+	glDeleteTextures(1, &b->texture);
+	glDeleteBuffers(1, &b->buffer);
+}
+
+static void bind_storage(enum lpv_binding at, const struct lpv_buffer *b)
+{
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, at, b->buffer);
 }
 
 /* Surface records and blocks as the shaders read them. */
 static int upload_links(struct lpv *lpv, const struct links *links)
 {
-	uint32_t *records = calloc(links->surface_count * 8 + 8, sizeof *records);
+	size_t count = links->surface_count + 1;
+	uint32_t *records = calloc(count * 8, sizeof *records);
+	uint32_t *cells = calloc(count, sizeof *cells);
+	int result = GR_ERR_NOMEM;
 
-	if (!records)
-		return GR_ERR_NOMEM;
+	if (!records || !cells)
+		goto out;
+	/* record 0: all open, nothing stopped */
+	for (int w = 0; w < 7; w++)
+		records[w] = LINK_OPEN * UINT32_C(0x01010101);
+	for (size_t i = 0; i < lattice_cells(&links->lattice); i++)
+		if (links->surface_of[i])
+			cells[links->surface_of[i] - 1] = (uint32_t)i;
 	for (size_t i = 0; i < links->surface_count; i++) {
 		const struct link_surface *s = &links->surfaces[i];
 
 		for (int j = 0; j < SECTOR_COUNT; j++)
-			records[8 * i + (size_t)j / 4] |= (uint32_t)s->through[j] << (8 * (j % 4));
-		records[8 * i + 7] = s->first | s->count << 27;
+			records[8 * (i + 1) + (size_t)j / 4] |= (uint32_t)s->through[j] << (8 * (j % 4));
+		records[8 * (i + 1) + 7] = s->first | s->count << 27;
 	}
-	lpv->surfaces = storage(links->surface_count * 8 * sizeof *records, records);
-	free(records);
-	lpv->surface_of = storage(lattice_cells(&links->lattice) * sizeof(uint32_t),
+	lpv->surfaces = storage(GL_RGBA32UI, count * 8 * sizeof *records, records);
+	lpv->surface_cells = storage(GL_R32UI, count * sizeof *cells, cells);
+	lpv->surface_count = (int)links->surface_count;
+	lpv->surface_of = storage(GL_R32UI, lattice_cells(&links->lattice) * sizeof(uint32_t),
 				  links->surface_of);
 	/* struct link_block is the shader's record byte for byte */
 	_Static_assert(sizeof(struct link_block) == 32, "two vec4");
-	lpv->blocks = storage(links->block_count * sizeof(struct link_block), links->blocks);
-	return GR_OK;
+	lpv->blocks = storage(GL_RGBA32F, links->block_count * sizeof(struct link_block), links->blocks);
+	result = dispatch_plan(links->surface_count, 64, &lpv->per_surface);
+out:
+	free(records);
+	free(cells);
+	return result;
 }
 
 static void upload_block(struct lpv *lpv)
@@ -87,40 +118,53 @@ static void bind(const struct gi_method *method)
 	const struct lpv *lpv = lpv_of_const(method);
 
 	glBindBufferBase(GL_UNIFORM_BUFFER, LPV_BINDING_BLOCK, lpv->block);
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_LIGHT, lpv->light[lpv->current]);
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_SURFACE_OF, lpv->surface_of);
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_SURFACES, lpv->surfaces);
+	glBindTextureUnit(LPV_UNIT_LIGHT, lpv->light[lpv->current].texture);
+	glBindTextureUnit(LPV_UNIT_SURFACE_OF, lpv->surface_of.texture);
+	glBindTextureUnit(LPV_UNIT_SURFACES, lpv->surfaces.texture);
+}
+
+static void reflect(struct lpv *lpv)
+{
+	glBindTextureUnit(LPV_UNIT_BLOCKS, lpv->blocks.texture);
+	glBindTextureUnit(LPV_UNIT_INJECT, lpv->inject.texture);
+	glBindTextureUnit(LPV_UNIT_SURFACE_CELLS, lpv->surface_cells.texture);
+	bind_storage(LPV_BINDING_INJECT, &lpv->emitted); /* written there */
+	glUseProgram(lpv->reflect);
+	glDispatchCompute(lpv->per_surface.x, lpv->per_surface.y, 1);
+	glMemoryBarrier(barriers);
 }
 
 void lpv_propagate(struct lpv *lpv, int steps)
 {
 	const int *size = lpv->lattice.size;
 
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_INJECT, lpv->inject);
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_BLOCKS, lpv->blocks);
+	glBindTextureUnit(LPV_UNIT_SURFACE_OF, lpv->surface_of.texture);
+	glBindTextureUnit(LPV_UNIT_SURFACES, lpv->surfaces.texture);
 	for (int i = 0; i < steps; i++) {
 		bool look = i >= steps - 2; /* the check compares the last two */
 
+		glBindTextureUnit(LPV_UNIT_SENT, lpv->sent[lpv->sending].texture);
+		glMemoryBarrier(barriers);
+		if (lpv->surface_count > 0)
+			reflect(lpv);
 		if (look) {
 			lpv->current = !lpv->current;
-			glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_NEW_LIGHT,
-					 lpv->light[lpv->current]);
+			bind_storage(LPV_BINDING_NEW_LIGHT, &lpv->light[lpv->current]);
 		}
 		glUseProgram(look ? lpv->last_step : lpv->step);
-		glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_SENT, lpv->sent[lpv->sending]);
-		glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_NEXT,
-				 lpv->sent[!lpv->sending]);
-		glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+		glBindTextureUnit(LPV_UNIT_EMITTED, lpv->emitted.texture);
+		bind_storage(LPV_BINDING_NEXT, &lpv->sent[!lpv->sending]);
 		glDispatchCompute(((unsigned)size[0] + 7) / 8, ((unsigned)size[1] + 3) / 4,
-				  ((unsigned)size[2] + LPV_SEGMENT - 1) / LPV_SEGMENT);
+				  3 * (((unsigned)size[2] + LPV_SEGMENT - 1) / LPV_SEGMENT));
 		lpv->sending = !lpv->sending;
 	}
-	glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+	glMemoryBarrier(barriers);
 }
 
 static void go_dark(struct lpv *lpv)
 {
-	const unsigned buffers[4] = { lpv->light[0], lpv->light[1], lpv->sent[0], lpv->sent[1] };
+	const unsigned buffers[4] = { lpv->light[0].buffer, lpv->light[1].buffer,
+				      lpv->sent[0].buffer, lpv->sent[1].buffer };
 
 	for (int i = 0; i < 4; i++)
 		glClearNamedBufferData(buffers[i], GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
@@ -213,7 +257,7 @@ static uint64_t hash(const struct gi_method *method)
 	if (!light)
 		return 0;
 	glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-	glGetNamedBufferSubData(lpv->light[lpv->current], 0, (GLsizeiptr)bytes, light);
+	glGetNamedBufferSubData(lpv->light[lpv->current].buffer, 0, (GLsizeiptr)bytes, light);
 	crypto_shorthash(digest, light, bytes, key);
 	for (int i = 0; i < 8; i++)
 		value |= (uint64_t)digest[i] << (8 * i);
@@ -231,13 +275,18 @@ static void destroy(struct gi_method *method)
 	lpv_check_finish(lpv);
 	program_destroy(&lpv->step);
 	program_destroy(&lpv->last_step);
+	program_destroy(&lpv->reflect);
 	glDeleteBuffers(1, &lpv->block);
-	glDeleteBuffers(2, lpv->light);
-	glDeleteBuffers(2, lpv->sent);
-	glDeleteBuffers(1, &lpv->surface_of);
-	glDeleteBuffers(1, &lpv->surfaces);
-	glDeleteBuffers(1, &lpv->inject);
-	glDeleteBuffers(1, &lpv->blocks);
+	for (int i = 0; i < 2; i++) {
+		storage_finish(&lpv->light[i]);
+		storage_finish(&lpv->sent[i]);
+	}
+	storage_finish(&lpv->surface_of);
+	storage_finish(&lpv->surfaces);
+	storage_finish(&lpv->surface_cells);
+	storage_finish(&lpv->inject);
+	storage_finish(&lpv->emitted);
+	storage_finish(&lpv->blocks);
 	free(lpv);
 }
 
@@ -273,8 +322,11 @@ static int create_step(struct lpv *lpv)
 		 "#define LATTICE_X %d\n#define LATTICE_Y %d\n#define LATTICE_Z %d\n#define SEGMENT %d\n",
 		 size[0], size[1], size[2], LPV_SEGMENT);
 	result = program_create_compute(&lpv->step, "lpv_step.comp", defines);
+	if (result == GR_OK)
+		result = program_create_compute(&lpv->reflect, "lpv_reflect.comp", defines);
 	if (result != GR_OK)
 		return result;
+	glProgramUniform1i(lpv->reflect, 0, lpv->surface_count);
 	strcat(defines, "#define WITH_LOOK\n");
 	return program_create_compute(&lpv->last_step, "lpv_step.comp", defines);
 }
@@ -297,10 +349,11 @@ static int create_gl(struct lpv *lpv, const struct links *links)
 	if (result != GR_OK)
 		return result;
 	for (int i = 0; i < 2; i++) {
-		lpv->light[i] = storage(cells * LPV_LIGHT_FLOATS * sizeof(float), NULL);
-		lpv->sent[i] = storage(bordered * LPV_LIGHT_FLOATS * sizeof(float), NULL);
+		lpv->light[i] = storage(GL_RGBA32F, cells * LPV_LIGHT_FLOATS * sizeof(float), NULL);
+		lpv->sent[i] = storage(GL_RGBA32F, bordered * LPV_LIGHT_FLOATS * sizeof(float), NULL);
 	}
-	lpv->inject = storage(cells * 12 * sizeof(float), NULL);
+	lpv->inject = storage(GL_RGBA32F, cells * LPV_LIGHT_FLOATS * sizeof(float), NULL);
+	lpv->emitted = storage(GL_RGBA32F, cells * LPV_LIGHT_FLOATS * sizeof(float), NULL);
 	glCreateBuffers(1, &lpv->block);
 	glNamedBufferStorage(lpv->block, sizeof(struct lattice_block), NULL,
 			     GL_DYNAMIC_STORAGE_BIT);

@@ -92,11 +92,12 @@ void lpv_check_submit(struct lpv *lpv)
 				 sizeof(uint32_t));
 	glClearNamedBufferSubData(lpv->splat, GL_R32UI, sizeof(uint32_t), sizeof(uint32_t),
 				  GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_LIGHT, lpv->light[lpv->current]);
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_NEXT, lpv->light[!lpv->current]);
+	glBindTextureUnit(LPV_UNIT_LIGHT, lpv->light[lpv->current].texture);
+	glBindTextureUnit(LPV_UNIT_BEFORE, lpv->light[!lpv->current].texture);
 	glBindBufferRange(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_CHECK, lpv->checks,
 			  slot * SLOT_BYTES, sizeof(struct lpv_check));
-	glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+	glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+			GL_BUFFER_UPDATE_BARRIER_BIT);
 	glUseProgram(lpv->check);
 	glDispatchCompute(lpv->per_cell.x, lpv->per_cell.y, 1);
 	glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);

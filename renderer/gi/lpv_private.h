@@ -10,21 +10,36 @@
 #include "renderer/gi/link.h"
 #include "renderer/gi/sectors.h"
 
-/* Storage and uniform buffer bindings; 8 to 10 stay bound for shading. */
+/* Storage and uniform buffer bindings. */
 enum lpv_binding {
 	LPV_BINDING_BLOCK = 8, /* uniform */
-	LPV_BINDING_LIGHT = 8,
-	LPV_BINDING_SURFACE_OF = 9,
-	LPV_BINDING_SURFACES = 10,
-	LPV_BINDING_INJECT = 11,
-	LPV_BINDING_BLOCKS = 12,
+	LPV_BINDING_INJECT = 11, /* written */
+	LPV_BINDING_EMITTED = 12,
 	LPV_BINDING_NEXT = 13,
-	LPV_BINDING_SENT = 14,
-	LPV_BINDING_NEW_LIGHT = 15,
-	LPV_BINDING_SPLAT = 14, /* in other programs */
+	LPV_BINDING_SPLAT = 14,
 	LPV_BINDING_CHECK = 15,
+	LPV_BINDING_NEW_LIGHT = 15,
 };
-#define LPV_RSM_UNIT 8 /* three */
+
+/* Texture units; 8 to 10 stay bound for shading. */
+enum lpv_unit {
+	LPV_UNIT_LIGHT = 8,
+	LPV_UNIT_SURFACE_OF = 9,
+	LPV_UNIT_SURFACES = 10,
+	LPV_UNIT_SENT = 11,
+	LPV_UNIT_BEFORE = 11, /* lpv_check */
+	LPV_UNIT_START_INJECT = 11, /* lpv_thesis_start */
+	LPV_UNIT_EMITTED = 12,
+	LPV_UNIT_BLOCKS = 12, /* lpv_reflect, with the next two */
+	LPV_UNIT_INJECT = 13,
+	LPV_UNIT_SURFACE_CELLS = 14,
+	LPV_UNIT_MAPS = 13, /* lpv_splat: three */
+};
+
+/* A buffer that programs write as storage and read as a texture. */
+struct lpv_buffer {
+	unsigned buffer, texture;
+};
 
 /* LatticeBlock in shaders/lpv_lattice.glsl (std140). */
 struct lattice_block {
@@ -63,13 +78,15 @@ struct lpv {
 	int settle_steps;
 	char description[256];
 
-	unsigned step, last_step, splat_peak, splat_sum, splat_resolve, check; /* programs */
-	unsigned block, surface_of, surfaces, inject, blocks, splat, checks;
-	unsigned light[2]; /* after the last step of a frame; light[current] is the newest */
+	unsigned step, last_step, reflect, splat_peak, splat_sum, splat_resolve, check; /* programs */
+	unsigned block, splat, checks;
+	struct lpv_buffer surface_of, surfaces, surface_cells, inject, emitted, blocks;
+	struct lpv_buffer light[2]; /* after the last step of a frame; light[current] is the newest */
 	int current;
-	unsigned sent[2]; /* with a border of one dark cell, scaled by the clamp */
+	struct lpv_buffer sent[2]; /* with a border of one dark cell, scaled by the clamp */
 	int sending;      /* sent[sending] is the newest */
-	struct dispatch per_cell;
+	struct dispatch per_cell, per_surface;
+	int surface_count;
 
 	/* What the light stands for. */
 	bool started;

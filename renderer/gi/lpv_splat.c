@@ -43,12 +43,13 @@ void lpv_splat(struct lpv *lpv, const struct rsm_set *rsm)
 	glClearNamedBufferSubData(lpv->splat, GL_R32UI, 0, HEADER_BYTES, GL_RED_INTEGER,
 				  GL_UNSIGNED_INT, NULL);
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_SPLAT, lpv->splat);
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_INJECT, lpv->inject);
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_INJECT, lpv->inject.buffer);
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_EMITTED, lpv->emitted.buffer);
 	if (rsm->layers > 0 && rsm->pixels > 0 &&
 	    dispatch_plan((uint64_t)side * (uint64_t)side * (uint64_t)rsm->layers, 64, &runs) == GR_OK) {
-		glBindTextureUnit(LPV_RSM_UNIT, rsm->position_area);
-		glBindTextureUnit(LPV_RSM_UNIT + 1, rsm->normal);
-		glBindTextureUnit(LPV_RSM_UNIT + 2, rsm->exitance);
+		glBindTextureUnit(LPV_UNIT_MAPS, rsm->position_area);
+		glBindTextureUnit(LPV_UNIT_MAPS + 1, rsm->normal);
+		glBindTextureUnit(LPV_UNIT_MAPS + 2, rsm->exitance);
 		for (int i = 0; i < 2; i++) {
 			glUseProgram(programs[i]);
 			glProgramUniform3i(programs[i], 0, rsm->pixels, rsm->layers, side);
@@ -57,8 +58,10 @@ void lpv_splat(struct lpv *lpv, const struct rsm_set *rsm)
 			glDispatchCompute(runs.x, runs.y, 1);
 		}
 	}
-	glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+	glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+			GL_BUFFER_UPDATE_BARRIER_BIT);
 	glUseProgram(lpv->splat_resolve);
 	glDispatchCompute(lpv->per_cell.x, lpv->per_cell.y, 1);
-	glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+	glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+			GL_BUFFER_UPDATE_BARRIER_BIT);
 }

@@ -185,8 +185,8 @@ void lpv_thesis_frame(struct lpv *lpv, float last_share, float this_share, int s
 {
 	struct lpv_thesis *thesis = &lpv->thesis;
 
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_LIGHT, lpv->light[lpv->current]);
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_INJECT, lpv->inject);
+	glBindTextureUnit(LPV_UNIT_LIGHT, lpv->light[lpv->current].texture);
+	glBindTextureUnit(LPV_UNIT_START_INJECT, lpv->inject.texture);
 	bind_images(thesis, thesis->newest);
 	glUseProgram(thesis->start);
 	glProgramUniform2f(thesis->start, 0, last_share, this_share);
@@ -195,10 +195,12 @@ void lpv_thesis_frame(struct lpv *lpv, float last_share, float this_share, int s
 	lpv_thesis_steps(thesis, &lpv->lattice, lpv->absorption, lpv->scattering, steps);
 	lpv->current = !lpv->current;
 	bind_images(thesis, thesis->newest);
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_NEXT, lpv->light[lpv->current]);
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, LPV_BINDING_NEXT,
+			 lpv->light[lpv->current].buffer);
 	glUseProgram(thesis->store);
 	glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 	glDispatchCompute(lpv->per_cell.x, lpv->per_cell.y, 1);
-	glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
+	glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+			GL_BUFFER_UPDATE_BARRIER_BIT |
 			GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }

@@ -7,12 +7,13 @@
 // front of it (their link's transmittance), do not count.
 #include "lpv_lattice.glsl"
 
-float gi_link_through(uint surface, ivec3 offset)
+float gi_link_through(int surface, ivec3 offset)
 {
 	int j = offset.x + 1 + 3 * (offset.y + 1) + 9 * (offset.z + 1);
 
 	j -= j > 13 ? 1 : 0;
-	uint word = surfaces[(surface - 1u) * 8u + uint(j >> 2)];
+	uint word = texelFetch(surfaces, 2 * surface + (j >> 4))[(j >> 2) & 3];
+
 	return float((word >> (8 * (j & 3))) & 255u) * (1.0 / 128.0);
 }
 
@@ -26,7 +27,7 @@ vec3 gi_irradiance(vec3 position, vec3 normal)
 	at = clamp(at, vec3(base), vec3(base) + 1.0) - 0.5;
 	ivec3 low = ivec3(floor(at));
 	vec3 t = at - vec3(low);
-	uint surface = surface_of[lattice_index(base)];
+	int surface = int(texelFetch(surface_of, lattice_index(base)).x);
 	vec4 red = vec4(0.0), green = vec4(0.0), blue = vec4(0.0);
 	float weights = 0.0;
 
@@ -42,15 +43,15 @@ vec3 gi_irradiance(vec3 position, vec3 normal)
 		if (offset != ivec3(0)) {
 			if (!lattice_in_front(cell, position, normal))
 				continue;
-			if (surface != 0u)
+			if (surface != 0)
 				w *= gi_link_through(surface, offset);
 			if (w <= 0.0)
 				continue;
 		}
-		int i = 3 * lattice_index(cell);
-		red += w * light[i];
-		green += w * light[i + 1];
-		blue += w * light[i + 2];
+		int i = lattice_index(cell);
+		red += w * texelFetch(light, i);
+		green += w * texelFetch(light, lattice.size.w + i);
+		blue += w * texelFetch(light, 2 * lattice.size.w + i);
 		weights += w;
 	}
 	if (weights <= 0.0)

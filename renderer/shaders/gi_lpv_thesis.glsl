@@ -19,11 +19,11 @@ vec3 gi_irradiance(vec3 position, vec3 normal)
 		ivec3 cell = min(low + o, lattice.size.xyz - 1);
 		vec3 f = mix(1.0 - t, t, vec3(o));
 		float w = f.x * f.y * f.z;
-		int i = 3 * lattice_index(cell);
+		int i = lattice_index(cell);
 
-		red += w * light[i];
-		green += w * light[i + 1];
-		blue += w * light[i + 2];
+		red += w * texelFetch(light, i);
+		green += w * texelFetch(light, lattice.size.w + i);
+		blue += w * texelFetch(light, 2 * lattice.size.w + i);
 	}
 	// cosine lobe of -normal in the order (1, -y, z, -x)
 	vec4 lobe = vec4(0.886226925, 1.023326708 * vec3(normal.y, -normal.z, normal.x));

@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 
 #include "lpv_lattice.glsl"
 
-layout(std430, binding = 13) readonly buffer BeforeBuffer { vec4 before[]; };
+layout(binding = 11) uniform samplerBuffer before;
 layout(std430, binding = 15) buffer CheckBuffer {
 	uint nonfinite, change, largest, bad_texels;
 } check;
@@ -28,10 +28,10 @@ void main()
 		float change = 0.0, largest = 0.0;
 
 		for (uint c = 0u; c < 3u; c++) {
-			vec4 now = light[3u * cell + c];
+			vec4 now = texelFetch(light, int(uint(lattice.size.w) * c + cell));
 
 			bad = bad || any(isnan(now)) || any(isinf(now));
-			vec4 moved = abs(now - before[3u * cell + c]);
+			vec4 moved = abs(now - texelFetch(before, int(uint(lattice.size.w) * c + cell)));
 			change = max(change, max(max(moved.x, moved.y), max(moved.z, moved.w)));
 			largest = max(largest, abs(now.x));
 		}

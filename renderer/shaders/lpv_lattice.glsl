@@ -10,12 +10,18 @@ layout(std140, binding = 8) uniform LatticeBlock {
 	vec4 point;       // xyz: the point that stands for a cell, in cells from its lower corner
 } lattice;
 
-// Per cell three vec4: F, V of red, of green, of blue [W].
-layout(std430, binding = 8) readonly buffer LightBuffer { vec4 light[]; };
-// Per cell: 0 where all links are open, else index + 1 of its surface record.
-layout(std430, binding = 9) readonly buffer SurfaceOfBuffer { uint surface_of[]; };
-// Eight words: 26 bytes of transmittance in 1/128; word 7: first block, their number from bit 27 on.
-layout(std430, binding = 10) readonly buffer SurfaceBuffer { uint surfaces[]; };
+// Everything that is only read is a buffer texture: one fetch for four words,
+// where a storage buffer takes four loads (on llvmpipe four times the time).
+// F, V [W] per cell: all of red, all of green, all of blue.
+layout(binding = 8) uniform samplerBuffer light;
+// Per cell its surface record; record 0 is that of cells with all links open.
+layout(binding = 9) uniform usamplerBuffer surface_of;
+// Two uvec4: 26 bytes of transmittance in 1/128; the last word: first block, their number from
+// bit 27 on.
+layout(binding = 10) uniform usamplerBuffer surfaces;
+
+// Over the length of a neighbour's offset, by its kind.
+const float INVERSE[3] = float[3](1.0, 0.70710678, 0.57735027);
 
 bool lattice_inside(ivec3 cell)
 {

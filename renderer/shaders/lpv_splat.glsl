@@ -6,9 +6,9 @@
 // stays under 2^38 units, 2^25 runs fit before the sign bit.
 #include "lpv_lattice.glsl"
 
-layout(binding = 8) uniform sampler2DArray position_area_map;
-layout(binding = 9) uniform sampler2DArray normal_map;
-layout(binding = 10) uniform sampler2DArray exitance_map;
+layout(binding = 13) uniform sampler2DArray position_area_map;
+layout(binding = 14) uniform sampler2DArray normal_map;
+layout(binding = 15) uniform sampler2DArray exitance_map;
 layout(location = 0) uniform ivec3 map_size; // pixels, layers, runs per side
 layout(std430, binding = 14) buffer SplatBuffer {
 	uint peak;       // bits of the largest texel flux of any band

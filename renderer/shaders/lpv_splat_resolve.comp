@@ -5,6 +5,7 @@ layout(local_size_x = 64) in;
 #include "lpv_splat.glsl"
 
 layout(std430, binding = 11) writeonly buffer InjectBuffer { vec4 inject[]; };
+layout(std430, binding = 12) writeonly buffer SourceBuffer { vec4 emitted[]; };
 
 float take_fixed(uint at)
 {
@@ -34,6 +35,7 @@ void main()
 
 		for (uint i = 0u; i < 4u; i++)
 			sum[i] = take_fixed(24u * cell + 8u * c + 2u * i);
-		inject[3u * cell + c] = sum;
+		inject[c * uint(lattice.size.w) + cell] = sum;
+		emitted[c * uint(lattice.size.w) + cell] = sum;
 	}
 }

@@ -18,7 +18,7 @@ void main()
 		return;
 	ivec3 cell = ivec3(i % lattice.size.x, (i / lattice.size.x) % lattice.size.y,
 			   i / (lattice.size.x * lattice.size.y));
-	stored[3 * i] = imageLoad(source_red, cell);
-	stored[3 * i + 1] = imageLoad(source_green, cell);
-	stored[3 * i + 2] = imageLoad(source_blue, cell);
+	stored[i] = imageLoad(source_red, cell);
+	stored[lattice.size.w + i] = imageLoad(source_green, cell);
+	stored[2 * lattice.size.w + i] = imageLoad(source_blue, cell);
 }
