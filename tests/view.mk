@@ -1,17 +1,42 @@
 # tests of view: projection needs no GL
 check_PROGRAMS += tests/unit/test_projection
 TESTS += tests/unit/test_projection
-tests_unit_test_projection_SOURCES = tests/unit/test_projection.c tests/unit/unit.h
+tests_unit_test_projection_SOURCES = tests/unit/test_projection.c tests/unit/unit.h \
+	tests/unit/shared.h
 tests_unit_test_projection_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_projection_LDADD = renderer/libgrenderer.a $(BASE_LIBS) $(CMOCKA_LIBS) -lm
 
 # the others draw, and skip (77) where there is no OpenGL 4.5
 VIEW_TEST_CFLAGS = $(TEST_CFLAGS) $(EPOXY_CFLAGS) $(OPENEXR_CFLAGS) $(PNG_CFLAGS)
+VIEW_TEST_SHARED = tests/accuracy/cornell.h tests/unit/unit.h tests/unit/gl.h tests/unit/shared.h
 VIEW_TEST_LIBS = $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm
 
 check_PROGRAMS += tests/accuracy/test_direct
 TESTS += tests/accuracy/test_direct
-tests_accuracy_test_direct_SOURCES = tests/accuracy/test_direct.c tests/accuracy/cornell.h \
-	tests/unit/unit.h tests/unit/gl.h
+tests_accuracy_test_direct_SOURCES = tests/accuracy/test_direct.c $(VIEW_TEST_SHARED)
 tests_accuracy_test_direct_CFLAGS = $(VIEW_TEST_CFLAGS)
 tests_accuracy_test_direct_LDADD = $(VIEW_TEST_LIBS)
+
+check_PROGRAMS += tests/accuracy/test_seam
+TESTS += tests/accuracy/test_seam
+tests_accuracy_test_seam_SOURCES = tests/accuracy/test_seam.c $(VIEW_TEST_SHARED)
+tests_accuracy_test_seam_CFLAGS = $(VIEW_TEST_CFLAGS)
+tests_accuracy_test_seam_LDADD = $(VIEW_TEST_LIBS)
+
+check_PROGRAMS += tests/accuracy/test_tone
+TESTS += tests/accuracy/test_tone
+tests_accuracy_test_tone_SOURCES = tests/accuracy/test_tone.c $(VIEW_TEST_SHARED)
+tests_accuracy_test_tone_CFLAGS = $(VIEW_TEST_CFLAGS)
+tests_accuracy_test_tone_LDADD = $(VIEW_TEST_LIBS)
+
+check_PROGRAMS += tests/accuracy/test_stereo
+TESTS += tests/accuracy/test_stereo
+tests_accuracy_test_stereo_SOURCES = tests/accuracy/test_stereo.c $(VIEW_TEST_SHARED)
+tests_accuracy_test_stereo_CFLAGS = $(VIEW_TEST_CFLAGS)
+tests_accuracy_test_stereo_LDADD = $(VIEW_TEST_LIBS)
+
+check_PROGRAMS += tests/accuracy/test_rsm
+TESTS += tests/accuracy/test_rsm
+tests_accuracy_test_rsm_SOURCES = tests/accuracy/test_rsm.c $(VIEW_TEST_SHARED)
+tests_accuracy_test_rsm_CFLAGS = $(VIEW_TEST_CFLAGS)
+tests_accuracy_test_rsm_LDADD = $(VIEW_TEST_LIBS)

@@ -8,6 +8,7 @@
 #include "renderer/renderer.h"
 #include "tests/accuracy/cornell.h"
 #include "tests/unit/gl.h"
+#include "tests/unit/shared.h"
 #include "tests/unit/unit.h"
 
 #define SMALL 9     /* pictures whose middle pixel is looked at */
@@ -16,24 +17,15 @@
 #define LARGE (OVERSAMPLE * REFERENCE)
 #define BLOCK 8
 
-static const char *shared(void)
-{
-	const char *given = getenv("GROTTO_SHARED");
-
-	return given ? given : "../shared";
-}
-
 static FILE *open_analytic(void)
 {
-	char path[4096];
-	FILE *f;
+	char path[1024];
+	FILE *f = NULL;
 
-	snprintf(path, sizeof(path), "%s/reference/analytic/analytic.csv", shared());
-	f = fopen(path, "r");
-	if (!f) {
-		printf("# skipped: no %s (set GROTTO_SHARED)\n", path);
+	if (shared_file("reference/analytic/analytic.csv", path))
+		f = fopen(path, "r");
+	if (!f)
 		skip();
-	}
 	return f;
 }
 
@@ -240,17 +232,11 @@ static void compare(const struct image *ours, const struct image *reference,
 static void read_part(const char *scene, const char *camera, const char *part, struct image *out)
 {
 	struct gr_diag diag = { 0 };
-	char path[4096];
+	char name[256], path[1024];
 
-	snprintf(path, sizeof(path), "%s/reference/renders/%s/%s%s.exr", shared(), scene, camera,
-		 part);
-	FILE *f = fopen(path, "r");
-
-	if (!f) {
-		printf("# skipped: no %s (set GROTTO_SHARED)\n", path);
+	snprintf(name, sizeof(name), "reference/renders/%s/%s%s.exr", scene, camera, part);
+	if (!shared_file(name, path))
 		skip();
-	}
-	fclose(f);
 	assert_int_equal(image_read_exr(path, out, &diag), GR_OK);
 	assert_int_equal(out->width, REFERENCE);
 	assert_int_equal(out->height, REFERENCE);

@@ -1,6 +1,7 @@
 /* Off-axis projection: corner rays, refusals, and the reference frusta. */
 #include "base/result.h"
 #include "renderer/view/projection.h"
+#include "tests/unit/shared.h"
 #include "tests/unit/unit.h"
 
 #include <math.h>
@@ -261,20 +262,16 @@ static int numbers(const char *line, double *out, int max)
 
 static void reference_frusta(void **state)
 {
-	const char *shared = getenv("GROTTO_SHARED");
-	char path[4096], line[4096];
+	char path[1024], line[4096];
 	double worst = 0;
 	int lines = 0;
-	FILE *f;
+	FILE *f = NULL;
 
 	(void)state;
-	snprintf(path, sizeof(path), "%s/reference/analytic/cave_offaxis.csv",
-		 shared ? shared : "../shared");
-	f = fopen(path, "r");
-	if (!f) {
-		printf("# skipped: no %s (set GROTTO_SHARED)\n", path);
+	if (shared_file("reference/analytic/cave_offaxis.csv", path))
+		f = fopen(path, "r");
+	if (!f)
 		skip();
-	}
 	while (fgets(line, sizeof(line), f)) {
 		double v[34];
 		struct projection_wall wall;
