@@ -1,0 +1,182 @@
+#!/bin/sh
+# Master and four nodes in network namespaces of their own on a bridge that
+# this test makes: with 5 % of all datagrams lost at every ingress each frame
+# still swaps on every node with the same state; a node that is cut off is
+# left out, and is back after it is connected again. Needs CAP_NET_ADMIN,
+# iproute2 and nftables; touches nothing but its own namespaces.
+. "${srcdir:-.}/tests/loopback/lib.sh"
+id=gr$$
+started=
+
+cleanup() {
+	for pid in $started; do
+		kill -KILL "$pid" 2>/dev/null
+	done
+	wait 2>/dev/null
+	for ns in hub m 1 2 3 4; do
+		ip netns del "$id-$ns" 2>/dev/null
+	done
+	rm -rf "$work"
+}
+trap cleanup EXIT
+trap 'exit 1' INT TERM HUP
+
+command -v ip >/dev/null || skip "ip (iproute2) is not installed"
+command -v nft >/dev/null || skip "nft (nftables) is not installed"
+ip netns add "$id-hub" 2>"$work/said" || skip "no network namespaces: $(cat "$work/said")"
+need_gl
+
+make_net() {
+	ip -n "$id-hub" link add br0 type bridge || return 1
+	ip -n "$id-hub" link set br0 up
+	address=1
+	for ns in m 1 2 3 4; do
+		ip netns add "$id-$ns" || return 1
+		ip -n "$id-$ns" link set lo up
+		ip -n "$id-$ns" link add eth0 type veth peer name "p$ns" netns "$id-hub" || return 1
+		ip -n "$id-hub" link set "p$ns" master br0 up || return 1
+		ip -n "$id-$ns" address add "10.77.0.$address/24" dev eth0
+		ip -n "$id-$ns" link set eth0 up
+		address=$((address + 1))
+	done
+}
+make_net 2>"$work/said" || skip "no bridge of namespaces: $(cat "$work/said")"
+
+# lose PERCENT: of the UDP datagrams that arrive anywhere
+lose() {
+	for ns in m 1 2 3 4; do
+		ip netns exec "$id-$ns" nft -f - <<-EOF || return 1
+			table netdev loss {
+				chain in {
+					type filter hook ingress device "eth0" priority 0;
+					ip protocol udp numgen random mod 100 < $1 counter drop
+				}
+			}
+		EOF
+	done
+}
+lost() {
+	for ns in m 1 2 3 4; do
+		ip netns exec "$id-$ns" nft list table netdev loss
+	done | sed -n 's/.*counter packets \([0-9]*\).*/\1/p' | awk '{ n += $1 } END { print n + 0 }'
+}
+
+# The walls are cave4's; each node has a machine, so there must be a key.
+"$grotto" key "$work/key" >/dev/null || fail "no key"
+cat >"$work/a.cave" <<EOF
+name = "netns";
+control_socket = "$work/control";
+walls = (
+	{ name = "front"; lower_left = [-1.5, 0.0, -1.5]; lower_right = [1.5, 0.0, -1.5];
+	  upper_left = [-1.5, 2.25, -1.5]; pixels = [32, 24];
+	  nodes = ( { name = "n1"; address = "10.77.0.2"; } ); },
+	{ name = "left"; lower_left = [-1.5, 0.0, 1.5]; lower_right = [-1.5, 0.0, -1.5];
+	  upper_left = [-1.5, 2.25, 1.5]; pixels = [32, 24];
+	  nodes = ( { name = "n2"; address = "10.77.0.3"; } ); },
+	{ name = "right"; lower_left = [1.5, 0.0, -1.5]; lower_right = [1.5, 0.0, 1.5];
+	  upper_left = [1.5, 2.25, -1.5]; pixels = [32, 24];
+	  nodes = ( { name = "n3"; address = "10.77.0.4"; } ); },
+	{ name = "floor"; lower_left = [-1.5, 0.0, 1.5]; lower_right = [1.5, 0.0, 1.5];
+	  upper_left = [-1.5, 0.0, -1.5]; pixels = [32, 32];
+	  nodes = ( { name = "n4"; address = "10.77.0.5"; } ); }
+);
+network = { master_address = "10.77.0.1"; key_file = "$work/key"; };
+rates = { evict_frames = 3; };
+trackers = ( { name = "visitor"; kind = "sim"; sim = { walk_radius_m = 0.5; }; } );
+EOF
+
+# start NS NAME PROGRAM OPTION...: in the background; its pid is left in $pid
+start() {
+	ns=$1 name=$2 program=$3
+	shift 3
+	ip netns exec "$id-$ns" "$builddir/daemon/$program" --layout "$work/a.cave" \
+		--scene "$srcdir/tests/data/loop.scene" --report "$work/$name.json" "$@" \
+		>"$work/$name.log" 2>&1 &
+	pid=$!
+	started="$started $pid"
+}
+# await SECONDS WHAT COMMAND...: until the command is true
+await() {
+	tries=$(($1 * 10)) what=$2
+	shift 2
+	while ! "$@" >/dev/null 2>&1; do
+		tries=$((tries - 1))
+		if [ $tries -le 0 ]; then
+			status | jq -c '{frame, joined, evicted, late, nodes: [.nodes[] | {name, state}]}'
+			fail "waited in vain for: $what"
+			tail -n 5 "$work"/*.log
+			exit 1
+		fi
+		sleep 0.1
+	done
+}
+gone() {
+	for one in "$@"; do
+		[ ! -d "/proc/$one" ] || grep -q '^State:.Z' "/proc/$one/status" || return 1
+	done
+}
+status() {
+	"$grotto" status --socket "$work/control" --json
+}
+holds() { # JQ-CONDITION: of the master's status
+	said=$(status) && printf '%s' "$said" | jq -e "$1"
+}
+cat_reports() {
+	for n in n1 n2 n3 n4; do
+		jq -c '{node, applied, swapped, mismatches, joined, lost, renderer: .renderer[0:8]}' "$work/$n.json"
+	done
+}
+
+# Loss.
+frames=60
+lose 5 2>"$work/said" || skip "no nftables at ingress: $(cat "$work/said")"
+start m master grotto-master --frames $frames --frame-clock --wait-all --deadline-ms 60000
+nodes=$pid
+for n in 1 2 3 4; do
+	start $n n$n grotto-node --node n$n --once
+	nodes="$nodes $pid"
+done
+# shellcheck disable=SC2086
+await 120 "the end of $frames frames under loss" gone $nodes
+started=
+for n in n1 n2 n3 n4; do
+	jq -e "(.applied == $frames) and (.swapped == $frames) and (.mismatches == 0)" \
+		"$work/$n.json" >/dev/null || fail "under loss: $(cat_reports)"
+done
+jq -e ".frames == $frames and .late == 0 and .evicted == 0 and .wire.repairs > 0" \
+	"$work/master.json" >/dev/null || fail "master under loss: $(jq -c . "$work/master.json")"
+[ "$(lost)" -gt 0 ] || fail "nothing was lost"
+echo "5 % loss: $(lost) datagrams lost, $(jq -c '{frames, repairs: .wire.repairs, commit_to_last_swap_us}' "$work/master.json")"
+for ns in m 1 2 3 4; do
+	ip netns exec "$id-$ns" nft delete table netdev loss
+done
+
+# Partition: frames go on without the node, and with it again.
+rm -f "$work"/*.json
+start m master grotto-master --frame-clock --wait-all --deadline-ms 500
+master=$pid
+for n in 1 2 3 4; do
+	start $n n$n grotto-node --node n$n --once
+done
+await 60 "four live nodes" holds '.frame > 20 and (.nodes | all(.state == "live"))'
+ip -n "$id-hub" link set p2 down
+await 60 "the eviction of n2" holds '.evicted >= 1 and (.nodes[1].state == "dead")'
+before=$(status | jq .frame)
+await 60 "frames without n2" holds ".frame > $before + 20"
+ip -n "$id-hub" link set p2 up
+await 60 "n2 to be back" holds '.joined >= 5 and (.nodes | all(.state == "live"))'
+before=$(status | jq .frame)
+await 60 "frames with n2" holds ".frame > $before + 20 and (.nodes[1].swapped_frame > $before)"
+kill -TERM "$master"
+# shellcheck disable=SC2086
+await 60 "the end" gone $started
+started=
+jq -e '(.nodes | all(.mismatches == 0))' "$work/master.json" >/dev/null ||
+	fail "partition: $(jq -c .nodes "$work/master.json")"
+for n in n1 n2 n3 n4; do
+	jq -e '.mismatches == 0' "$work/$n.json" >/dev/null || fail "partition: $(cat_reports)"
+done
+echo "partition: $(jq -c '{frames, joined, evicted, late, missed: [.nodes[].missed]}' "$work/master.json")"
+
+[ $failed -eq 0 ] && echo "ok"
+exit $failed
