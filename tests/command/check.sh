@@ -11,11 +11,19 @@ fail() {
 	failed=1
 }
 
-for file in "$srcdir"/layouts/*.cave "$srcdir"/scenes/*.scene; do
-	[ -e "$file" ] || continue
-	said=$("$grotto" check "$file" 2>&1)
-	status=$?
-	[ $status -eq 0 ] || fail "$file: exit $status: $said"
+# The key that a layout for several machines names is not on this one: give it one.
+folder=check.work.$$
+rm -rf "$folder" && mkdir "$folder" || exit 1
+trap 'rm -rf "$folder"' EXIT
+"$grotto" key "$folder/key" >/dev/null || fail "no key for the shipped layouts"
+for file in "$srcdir"/layouts/*.cave; do
+	copy=$folder/$(basename "$file")
+	sed 's,key_file = "[^"]*",key_file = "key",' "$file" >"$copy"
+	said=$("$grotto" check "$copy" 2>&1) || fail "$file: exit $?: $said"
+	case $said in *"warning:"*) fail "$file: $said" ;; esac
+done
+for file in "$srcdir"/scenes/*.scene "$srcdir"/tests/data/*.scene; do
+	said=$("$grotto" check "$file" 2>&1) || fail "$file: exit $?: $said"
 done
 
 count=0
