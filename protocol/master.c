@@ -454,7 +454,7 @@ static enum fdp_verdict take(struct fdp_master *m, const struct fdp_header *h, c
 			return FDP_BAD_SESSION;
 		if (fdp_join_decode(body, h->payload_len, &join) || join.index != h->sender)
 			return FDP_BAD_FORMAT;
-		fdp_master_on_join(m, h->sender, h, body, now_ns);
+		fdp_master_on_join(m, h, &join, now_ns);
 		return FDP_GOOD;
 	}
 	if (peer->state == FDP_PEER_ABSENT && !peer->joins)

@@ -13,8 +13,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define BIT(node) (UINT64_C(1) << (node))
-
 static void make_challenge(const struct fdp_master *m, unsigned node,
 			   const uint8_t nonce[FDP_NONCE_BYTES],
 			   uint8_t challenge[FDP_NONCE_BYTES])
@@ -156,27 +154,25 @@ static void admit(struct fdp_master *m, unsigned node, const struct fdp_header *
 	fdp_master_send_snapshot(m, node, now_ns);
 }
 
-void fdp_master_on_join(struct fdp_master *m, unsigned node, const struct fdp_header *header,
-			const uint8_t *body, int64_t now_ns)
+void fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
+			const struct fdp_join *join, int64_t now_ns)
 {
+	const unsigned node = header->sender;
 	struct fdp_peer *peer = &m->peers[node];
 	uint8_t expected[FDP_NONCE_BYTES];
 	char reason[FDP_REASON_MAX];
-	struct fdp_join join;
 
-	if (fdp_join_decode(body, header->payload_len, &join))
-		return;
-	if (refuses(m, header->version, &join, reason)) {
-		refuse(m, node, &join, reason, now_ns);
+	if (refuses(m, header->version, join, reason)) {
+		refuse(m, node, join, reason, now_ns);
 		return;
 	}
 	if (!header->session) {
-		welcome(m, node, &join);
+		welcome(m, node, join);
 		return;
 	}
 	/* Our snapshot was lost, or its acknowledgement. */
 	if (peer->state == FDP_PEER_JOINING &&
-	    !sodium_memcmp(join.challenge, peer->challenge, sizeof expected)) {
+	    !sodium_memcmp(join->challenge, peer->challenge, sizeof expected)) {
 		if (fdp_replay_take(&peer->window, header->sequence)) {
 			peer->status.last_heard_ns = now_ns;
 			if (now_ns - peer->snapshot_ns >= m->params.probe_ns)
@@ -184,9 +180,9 @@ void fdp_master_on_join(struct fdp_master *m, unsigned node, const struct fdp_he
 		}
 		return;
 	}
-	make_challenge(m, node, join.nonce, expected);
-	if (!sodium_memcmp(join.challenge, expected, sizeof expected))
-		admit(m, node, header, &join, now_ns);
+	make_challenge(m, node, join->nonce, expected);
+	if (!sodium_memcmp(join->challenge, expected, sizeof expected))
+		admit(m, node, header, join, now_ns);
 	else
 		m->counters.bad_replay++;
 }

@@ -80,8 +80,8 @@ void fdp_master_finish_if_over(struct fdp_master *m, int64_t now_ns);
 void fdp_master_write_state(struct fdp_master *m, struct fdp_letter *letter, enum fdp_kind kind,
 			    uint64_t base);
 
-void fdp_master_on_join(struct fdp_master *m, unsigned node, const struct fdp_header *header,
-			const uint8_t *body, int64_t now_ns);
+void fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
+			const struct fdp_join *join, int64_t now_ns);
 void fdp_master_on_leave(struct fdp_master *m, unsigned node, int64_t now_ns);
 
 void fdp_master_send_snapshot(struct fdp_master *m, unsigned node, int64_t now_ns);

@@ -220,7 +220,7 @@ static enum fdp_verdict in_session(struct fdp_node *n, const struct fdp_header *
 		fdp_node_ask_again(n, FDP_NODE_MASTER_LEFT, "the master goes");
 		/* Its successor needs a moment. */
 		n->asked = true;
-		n->asked_ns = now_ns;
+		n->asked_ns = n->hinted_ns = now_ns;
 		return FDP_GOOD;
 	default:
 		return FDP_BAD_FORMAT;
@@ -241,8 +241,10 @@ int fdp_node_receive(struct fdp_node *n, const uint8_t *bytes, size_t len, int64
 		 * recording. Asking shows which, and changes nothing here until
 		 * the answer echoes our nonce.
 		 */
-		if (!n->asked || now_ns - n->asked_ns >= n->params.join_ns)
+		if (!n->hinted_ns || now_ns - n->hinted_ns >= n->params.join_ns) {
+			n->hinted_ns = now_ns;
 			send_join(n, 0, now_ns);
+		}
 		if (!n->gate.session) {
 			/* Nothing bad while we are in no session: a master that we are asking. */
 			return GR_ERR_MISMATCH;

@@ -87,7 +87,8 @@ static void say_mismatch(struct fdp_node *n, uint64_t frame, uint64_t ours, uint
 
 /* Takes the next state beside the present one, and makes it the present one if it is right. */
 static enum fdp_verdict apply(struct fdp_node *n, const struct fdp_state_head *head,
-			      const uint8_t *delta, size_t len, uint64_t base, int64_t now_ns)
+			      uint64_t sequence, const uint8_t *delta, size_t len, uint64_t base,
+			      int64_t now_ns)
 {
 	const bool chained = base && head->previous_frame == n->applied;
 	struct param_state *next = n->scratch;
@@ -110,6 +111,10 @@ static enum fdp_verdict apply(struct fdp_node *n, const struct fdp_state_head *h
 	n->state = next;
 	n->applied = head->frame;
 	n->hash = hash;
+	if (n->status == FDP_NODE_WAITING_SNAPSHOT) {
+		n->status = FDP_NODE_LIVE;
+		n->joined_sequence = sequence;
+	}
 	send_report(n, FDP_ACK, n->applied, n->hash);
 	if (fdp_node_in(n, head->live))
 		start_frame(n, head->frame);
@@ -143,12 +148,10 @@ static enum fdp_verdict take_state(struct fdp_node *n, const struct fdp_header *
 	if (n->status == FDP_NODE_WAITING_SNAPSHOT) {
 		if (!snapshot)
 			return FDP_GOOD; /* nothing to put it on yet */
-		n->status = FDP_NODE_LIVE;
-		n->joined_sequence = h->sequence;
 	} else if (head.frame < n->applied ||
 		   (head.frame == n->applied && (!snapshot || head.hash == n->hash))) {
-		/* Old news; a snapshot sent again means that our ACK was lost. */
-		if (snapshot && head.frame == n->applied)
+		/* Old news; but who sends a snapshot has not heard what we hold. */
+		if (snapshot)
 			send_report(n, FDP_ACK, n->applied, n->hash);
 		return FDP_GOOD;
 	}
@@ -157,7 +160,7 @@ static enum fdp_verdict take_state(struct fdp_node *n, const struct fdp_header *
 			ask_for_snapshot(n, head.frame, now_ns);
 		return FDP_GOOD;
 	}
-	return apply(n, &head, delta, len, base, now_ns);
+	return apply(n, &head, h->sequence, delta, len, base, now_ns);
 }
 
 static void nack_gap(struct fdp_node *n, struct fdp_reassembly *r, unsigned index, int64_t now_ns)
@@ -176,6 +179,18 @@ static void nack_missing(struct fdp_node *n, const struct fdp_reassembly *r, int
 		send_nack(n, &nack, now_ns);
 }
 
+/* The same snapshot again: our ACK was lost, or we could not use it the first time. */
+static void snapshot_again(struct fdp_node *n, const struct fdp_header *h)
+{
+	if (h->kind != FDP_SNAPSHOT || h->message != n->snapshot.message ||
+	    fdp_reassembly_open(&n->snapshot) || h->index + 1 != h->count)
+		return;
+	if (n->status == FDP_NODE_LIVE)
+		send_report(n, FDP_ACK, n->applied, n->hash);
+	else
+		fdp_reassembly_reset(&n->snapshot); /* take it when it comes once more */
+}
+
 enum fdp_verdict fdp_node_on_state(struct fdp_node *n, const struct fdp_header *h,
 				   const uint8_t *payload, int64_t now_ns)
 {
@@ -188,6 +203,7 @@ enum fdp_verdict fdp_node_on_state(struct fdp_node *n, const struct fdp_header *
 	case FDP_FRAGMENT_BAD:
 		return FDP_BAD_FORMAT;
 	case FDP_FRAGMENT_AGAIN:
+		snapshot_again(n, h);
 		return FDP_GOOD;
 	case FDP_FRAGMENT_PART:
 		if (r->have == 1)

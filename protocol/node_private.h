@@ -40,6 +40,7 @@ struct fdp_node {
 	struct fdp_replay window;
 	int64_t asked_ns; /* JOIN last sent */
 	bool asked;
+	int64_t hinted_ns; /* JOIN last sent because of another session's datagram */
 	int64_t heard_ns; /* master, in this session */
 	int64_t retry_ns; /* the master's probe interval */
 	char refused[FDP_REASON_MAX];

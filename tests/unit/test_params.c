@@ -343,12 +343,37 @@ static void hashes(void **state)
 	assert_int_not_equal(changed, param_state_hash(f->b, 0)); /* versions count */
 }
 
+/* docs/protocol.md lists every parameter as the table has it. GROTTO_PRINT=1 prints the lines. */
+static void documented(void **state)
+{
+	static const char *const types[] = { "f32", "i32", "u32", "u64" };
+	static char text[65536];
+	FILE *file = fopen(PROTOCOL_DOC, "r");
+
+	(void)state;
+	assert_non_null(file);
+	text[fread(text, 1, sizeof text - 1, file)] = 0;
+	fclose(file);
+	for (int i = 0; i < PARAM_COUNT; i++) {
+		const struct param_info *info = param_info((enum param_id)i);
+		char line[512];
+
+		snprintf(line, sizeof line, "| %d | `%s` | %s | %u | %g | %g | %g | %s | %s |\n", i,
+			 info->name, types[info->type], (unsigned)info->count, info->def, info->min,
+			 info->max, info->unit, info->help);
+		if (getenv("GROTTO_PRINT"))
+			printf("%s", line);
+		else if (!strstr(text, line))
+			fail_msg("%s has no line: %s", PROTOCOL_DOC, line);
+	}
+}
+
 int main(void)
 {
 #define T(f) cmocka_unit_test_setup_teardown(f, setup, teardown)
 	const struct CMUnitTest tests[] = {
 		T(table), T(set_and_get), T(ranges), T(round_trips), T(room), T(truncated),
-		T(corrupted), T(bad_deltas), T(snapshot_resets), T(hashes),
+		T(corrupted), T(bad_deltas), T(snapshot_resets), T(hashes), T(documented),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
