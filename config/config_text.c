@@ -112,6 +112,15 @@ static int line_of(const char *text, const char *at)
 	return line;
 }
 
+static size_t count_keys(const char *text, size_t len)
+{
+	size_t count = 0;
+
+	for (size_t i = 0; i < len; i++)
+		count += text[i] == '=' || text[i] == ':';
+	return count;
+}
+
 int config_text_parse(const char *text, size_t len, const char *name, config_t *out,
 		      struct gr_diag *diag)
 {
@@ -126,6 +135,11 @@ int config_text_parse(const char *text, size_t len, const char *name, config_t *
 	if (memchr(text, '\0', len)) {
 		gr_diag_add(diag, GR_DIAG_ERROR, name, line_of(text, memchr(text, '\0', len)), NULL,
 			    "holds a NUL byte; this is not a text file");
+		return GR_ERR_CONFIG;
+	}
+	if (count_keys(text, len) > CONFIG_TEXT_KEYS) {
+		gr_diag_add(diag, GR_DIAG_ERROR, name, 0, NULL, "holds more than %d keys",
+			    CONFIG_TEXT_KEYS);
 		return GR_ERR_CONFIG;
 	}
 	copy = malloc(len + 1);

@@ -1,7 +1,8 @@
 /*
  * From bytes to libconfig's tree, with the bounds that a file from outside
- * needs: at most CONFIG_TEXT_MAX bytes, no NUL, no @include (a layout must be
- * one file so that its hash and its line numbers mean something).
+ * needs: at most CONFIG_TEXT_MAX bytes and CONFIG_TEXT_KEYS settings, no NUL,
+ * no @include (a layout must be one file so that its hash and its line
+ * numbers mean something).
  *
  * Private to config/.
  */
@@ -14,6 +15,12 @@
 #include <stddef.h>
 
 #define CONFIG_TEXT_MAX (1024u * 1024u)
+/*
+ * libconfig compares each new key with all others of its group: 120,000 keys,
+ * which 1 MiB can hold, take minutes. Counted as '=' and ':', so a few in
+ * comments and IPv6 addresses count too.
+ */
+#define CONFIG_TEXT_KEYS 8192
 
 /*
  * The whole file as a string, caller frees. GR_OK, GR_ERR_IO (named in diag),
