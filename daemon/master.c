@@ -13,6 +13,7 @@
 #define RECEIVE_MOST 256 /* then timers and other descriptors have their turn */
 /* A light that starts anew costs many frames' work in one; the barrier waits longer for it. */
 #define RESTART_PATIENCE 8
+#define RESTART_PATIENCE_NS (30 * GR_NS_PER_S) /* but no longer, unless the deadline is */
 #define LIGHT_RESTART_NS GR_NS_PER_S /* a slow node may not make the others start over more often */
 
 static const char *node_name(const struct master *m, int node)
@@ -148,6 +149,15 @@ static int64_t frame_time(const struct master *m, uint64_t frame, int64_t now_ns
 	return llrint((double)frame * 1e9 / (double)m->params.layout->rates.frame_hz);
 }
 
+static int64_t frame_deadline(const struct master *m)
+{
+	int64_t usual = m->params.layout->rates.barrier_deadline_ns, longer = RESTART_PATIENCE * usual;
+
+	if (!m->restart_light || usual >= RESTART_PATIENCE_NS)
+		return usual;
+	return longer < RESTART_PATIENCE_NS ? longer : RESTART_PATIENCE_NS;
+}
+
 static void begin_frame(struct master *m, int64_t now_ns)
 {
 	uint64_t frame = m->frame + 1, times;
@@ -165,8 +175,7 @@ static void begin_frame(struct master *m, int64_t now_ns)
 	m->input.time_ns = m->last_time_ns = time_ns;
 	if (m->restart_light)
 		m->light_restart_ns = now_ns;
-	fdp_master_set_deadline(m->fdp, m->params.layout->rates.barrier_deadline_ns *
-						(m->restart_light ? RESTART_PATIENCE : 1));
+	fdp_master_set_deadline(m->fdp, frame_deadline(m));
 	r = master_state_frame(&m->scene_state, &m->input, m->restart_light, m->state, frame,
 			       &refused);
 	if (r < 0 && gr_log_limit(&m->range_limit, now_ns, &times))

@@ -34,6 +34,11 @@ static int load(struct opened *o, const struct master_options *options)
 		return r;
 	/* Only the hash of the model is needed from here on. */
 	scene_destroy(&o->files.scene);
+	if ((size_t)options->expect > o->files.layout->node_count) {
+		gr_error("--expect %d: the layout has %zu nodes", options->expect,
+			 o->files.layout->node_count);
+		return GR_ERR_CONFIG;
+	}
 	r = trackers_open(&o->trackers, o->files.layout, &diag);
 	gr_diag_log(&diag);
 	gr_diag_finish(&diag);

@@ -3,3 +3,4 @@ dist_doc_DATA += docs/layout.md docs/scene.md
 dist_doc_DATA += README.md CHANGELOG.md LICENSE docs/architecture.md docs/operating.md docs/tracking.md
 include $(top_srcdir)/docs/man/local.mk
 dist_doc_DATA += docs/protocol.md
+dist_doc_DATA += docs/control.md

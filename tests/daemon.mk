@@ -36,6 +36,8 @@ tests_loopback_stranger_SOURCES = tests/loopback/stranger.c tests/unit/unit.h
 tests_loopback_stranger_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
 tests_loopback_stranger_LDADD = $(PROTOCOL_LIBS)
 
-dist_check_SCRIPTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh
-TESTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh
+dist_check_SCRIPTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh \
+	tests/loopback/group.sh
+TESTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh \
+	tests/loopback/group.sh
 EXTRA_DIST += tests/loopback/room.sh tests/loopback/room.cave.in tests/loopback/cell.scene

@@ -6,7 +6,7 @@ make_room "32, 24" 5000.0
 need_gl
 nodes="front left"
 
-start_master --frame-clock --expect 2
+start_master --expect 2
 for n in $nodes; do start_node $n --once; done
 wait_for 120 frame_is_past 5
 
