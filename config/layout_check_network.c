@@ -82,7 +82,8 @@ static void check_group(struct options_reader *reader, const struct layout_file 
 			      network->group);
 	} else if (network->cast == LAYOUT_BROADCAST &&
 		   (!group.v4 || address_multicast(&group) || address_unspecified(&group) ||
-		    address_loopback(&group))) {
+		    /* the loopback net has one, too: a room on one machine */
+		    (address_loopback(&group) && strcmp(network->group, "127.255.255.255")))) {
 		options_fault(reader, GR_DIAG_ERROR, file->at, key,
 			      "%s is not an IPv4 broadcast address; it looks like 192.0.2.255",
 			      network->group);
