@@ -14,6 +14,8 @@ config_libgconfig_a_SOURCES = \
 	config/layout_write.c \
 	config/options.c config/options.h \
 	config/options_markdown.c \
+	config/options_read.c \
+	config/options_value.c config/options_value.h \
 	config/options_write.c \
 	config/scene_check.c \
 	config/scene_file.c config/scene_file.h \
