@@ -262,7 +262,7 @@ def grotto():
     rust = m.material("ochre", (0.66, 0.25, 0.11))
     chalk = m.material("chalk", (0.80, 0.77, 0.70))
     water = m.material("water", (0.04, 0.13, 0.17), roughness=0.25)
-    crystal = m.material("crystal", (0.10, 0.30, 0.35), emission=(1.5, 5.0, 7.0))
+    crystal = m.material("crystal", (0.10, 0.30, 0.35), emission=(0.6, 2.2, 3.0))
     chance = random.Random(5)
     jitter = lambda size: chance.uniform(-size, size)
     shell = Shell()
@@ -280,14 +280,17 @@ def grotto():
         points = []
         for i in range(sides):
             a = 2 * math.pi * i / sides + math.pi / sides
-            r = flat if flat else radius(a) * part * (1 + jitter(0.05))
+            r = flat
+            if not flat:
+                a += jitter(0.12)
+                r = radius(a) * part * (1 + jitter(0.11))
             points.append([r * math.cos(a), height + (jitter(rough) if rough else 0),
                            r * math.sin(a)])
         return points
 
     # The CAVE stands on the flat middle: 3 x 3 m reach out to 2.12 m.
-    rings = [ring(1, 0.0, 0, flat=2.25), ring(0.74, 0.14, 0.10), ring(0.97, 0.85, 0.2),
-             ring(1.0, 2.0, 0.25), ring(0.82, 3.1, 0.25), ring(0.42, 3.75, 0.2)]
+    rings = [ring(1, 0.0, 0, flat=2.25), ring(0.74, 0.16, 0.14), ring(0.97, 0.95, 0.3),
+             ring(1.0, 2.0, 0.35), ring(0.80, 3.15, 0.35), ring(0.40, 3.8, 0.35)]
     bottom, top = [0.0, 0.0, 0.0], [0.1, 4.05, -0.1]
     inside = [0, 1.6, 0]
 
@@ -344,11 +347,12 @@ def grotto():
 
     for x, z, length, width in ((1.9, -2.6, 1.5, 0.24), (-1.5, -2.9, 1.1, 0.2),
                                 (0.3, -4.2, 1.6, 0.26), (-2.6, 0.9, 1.2, 0.22),
-                                (2.5, 1.2, 0.9, 0.2), (0.5, 2.6, 1.0, 0.2)):
+                                (2.5, 1.2, 0.9, 0.2), (0.5, 2.6, 1.0, 0.2),
+                                (-0.8, -3.3, 0.7, 0.15), (1.2, -3.7, 0.8, 0.16)):
         stalactite(x, z, length, width)
     for x, z, length, width in ((2.6, -2.3, 1.0, 0.3), (-2.3, -2.6, 0.7, 0.24),
                                 (-3.1, 1.5, 1.2, 0.3), (2.9, 1.9, 0.6, 0.25),
-                                (-0.6, 3.0, 0.9, 0.28)):
+                                (-0.6, 3.0, 0.9, 0.28), (2.1, -3.1, 0.6, 0.22)):
         stalagmite(x, z, length, width)
 
     # A column, floor to roof, narrow in the middle.
@@ -383,17 +387,12 @@ def grotto():
         m.facing(dark, [3 * crest[i][0] - 2 * x, 2, 3 * crest[i][2] - 2 * z],
                  crest[i], crest[k], outer[k], outer[i])
 
-    # Crystals that glow a little: six-sided double pyramids.
-    for x, z, length in ((-2.9, -1.9, 0.5), (-2.6, -1.55, 0.32), (3.2, -0.6, 0.45)):
-        ground = shell.heights(x, z)[0]
-        waist, tip, foot = ground + 0.45 * length, [x + 0.05, ground + length, z], [x, ground - 0.1, z]
-        belt = [[x + 0.24 * length * math.cos(math.pi * i / 3), waist,
-                 z + 0.24 * length * math.sin(math.pi * i / 3)] for i in range(6)]
-        for i in range(6):
-            a, b = belt[i], belt[(i + 1) % 6]
-            away = [a[0] + b[0] - x, waist, a[2] + b[2] - z]
-            m.facing(crystal, [away[0], waist + length, away[2]], a, b, tip)
-            m.facing(crystal, [away[0], waist - length, away[2]], a, b, foot)
+    # Crystals that glow: pyramids of four faces, few enough that each face is a lamp of
+    # its own to the renderer, which shares 16 among all glowing surfaces.
+    for x, z, length, width in ((-2.75, -2.0, 0.75, 0.16), (-2.45, -1.6, 0.45, 0.12),
+                                (-2.95, -1.5, 0.35, 0.1)):
+        spike(crystal, x, z, shell.heights(x, z)[0] - 0.05, shell.heights(x, z)[0] + length,
+              width, corners=4)
     return m
 
 
