@@ -41,3 +41,10 @@ dist_check_SCRIPTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/l
 TESTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh \
 	tests/loopback/group.sh
 EXTRA_DIST += tests/loopback/room.sh tests/loopback/room.cave.in tests/loopback/cell.scene
+
+check_PROGRAMS += tests/unit/test_trackers
+TESTS += tests/unit/test_trackers
+tests_unit_test_trackers_SOURCES = tests/unit/test_trackers.c tests/unit/unit.h
+tests_unit_test_trackers_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_trackers_LDADD = daemon/libgdaemon.a $(TRACKING_LIBS) $(CONFIG_LIBS) \
+	$(PROTOCOL_LIBS) $(CMOCKA_LIBS)
