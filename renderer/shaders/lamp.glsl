@@ -7,9 +7,9 @@ struct Lamp {
 	ivec4 maps;     // x: first layer of lamp_layers, y: layers, 1 or 6
 };
 
-layout(std430, binding = 3) readonly buffer Lamps {
+layout(std140, binding = 3) uniform Lamps {
 	ivec4 lamp_count; // x
-	Lamp lamps[];
+	Lamp lamps[16];
 };
 
 // Seed 004 section 3.3.4 (Direct3D's spotlight): 1 inside, 0 outside the cone.

@@ -1,31 +1,46 @@
 // Soft-edged shadows of lamps: percentage-closer filtering whose width follows
 // the source's radius and the mean distance of what is in between (Fernando,
 // "Percentage-Closer Soft Shadows", 2005).
-layout(std430, binding = 4) readonly buffer LampLayers {
-	MapLayer lamp_layers[];
+layout(std140, binding = 4) uniform LampLayers {
+	MapLayer lamp_layers[96];
 };
 layout(binding = 5) uniform sampler2DArrayShadow lamp_depth_compare;
 layout(binding = 6) uniform sampler2DArray lamp_depth;
 
 #define LAMP_SEARCH_TAPS 8
-#define LAMP_FILTER_TAPS 20
+#define LAMP_FILTER_TAPS 16
+#define LAMP_HARD_TAPS 4
 // Blockers nearer to the lamp than this share of the way are searched for only
 // as widely as if they were there.
 #define LAMP_NEAREST_BLOCKER 0.25
 
-// Mean distance of the blockers from the lamp along the layer's axis, 0: none.
-float lamp_blocker(MapLayer layer, int index, ShadowPoint s, float radius)
+// 0 dark .. 1 lit. Where the lamp does not shine (reaches false) nothing is
+// looked up. The lengths of the loops, and not branches, leave work out:
+// software runs both sides of a branch.
+float lamp_visibility(Lamp lamp, vec3 p, vec3 n, vec3 to_lamp, float metres, bool reaches)
 {
 	const mat2 golden = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688);
-	vec2 direction = vec2(1.0, 0.0);
-	float sum = 0.0, count = 0.0;
+	int index = lamp.maps.x + (lamp.maps.y == 6 ? shadow_face(-to_lamp) : 0);
+	MapLayer layer = lamp_layers[index];
+	ShadowPoint s = shadow_point(layer, p, n, -to_lamp * metres, metres);
+	float one_texel = 1.0 / layer.extent.y;
+	float source = lamp.direction.w == 2.0 ? 0.0 : lamp.position.w / (2.0 * layer.extent.x);
+	bool far_enough = reaches && s.axial > layer.range.x;
+	bool soft = source > 0.0 && far_enough;
 
-	for (int i = 0; i < LAMP_SEARCH_TAPS; i++) {
-		vec2 at = direction * (radius * sqrt((float(i) + 0.5) / float(LAMP_SEARCH_TAPS)));
-		vec2 texel = floor((s.uvz.xy + at) * layer.extent.y);
-		vec2 centre = (texel + 0.5) / layer.extent.y - s.uvz.xy;
-		float depth = texelFetch(lamp_depth, ivec3(clamp(texel, vec2(0.0),
-								 vec2(layer.extent.y - 1.0)), index), 0).r;
+	// mean distance of the blockers from the lamp
+	float nearest = max(layer.range.x, LAMP_NEAREST_BLOCKER * s.axial);
+	float widest = max(source * (1.0 / nearest - 1.0 / s.axial), one_texel);
+	float sum = 0.0, count = 0.0;
+	vec2 direction = vec2(1.0, 0.0);
+	int taps = soft ? LAMP_SEARCH_TAPS : 0;
+
+	for (int i = 0; i < taps; i++) {
+		float radius = widest * sqrt((float(i) + 0.5) / float(LAMP_SEARCH_TAPS));
+		vec2 texel = floor((s.uvz.xy + direction * radius) * layer.extent.y);
+		vec2 centre = (texel + 0.5) * one_texel - s.uvz.xy;
+		ivec2 at = ivec2(clamp(texel, vec2(0.0), vec2(layer.extent.y - 1.0)));
+		float depth = texelFetch(lamp_depth, ivec3(at, index), 0).r;
 
 		if (depth > s.uvz.z + dot(s.slope, centre)) {
 			sum += shadow_axial(layer, depth);
@@ -33,34 +48,10 @@ float lamp_blocker(MapLayer layer, int index, ShadowPoint s, float radius)
 		}
 		direction = golden * direction;
 	}
-	return count > 0.0 ? sum / count : 0.0;
-}
 
-// 0 dark .. 1 lit.
-float lamp_visibility(Lamp lamp, vec3 p, vec3 n, vec3 to_lamp)
-{
-	int index = lamp.maps.x;
+	float width = source * (count / max(sum, 1e-6) - 1.0 / s.axial);
 
-	if (lamp.maps.y == 6)
-		index += shadow_face(-to_lamp);
-
-	MapLayer layer = lamp_layers[index];
-	ShadowPoint s = shadow_point(layer, p, n, to_lamp);
-	float one_texel = 1.0 / layer.extent.y;
-	float source = lamp.direction.w == 2.0 ? 0.0 : lamp.position.w / (2.0 * layer.extent.x);
-
-	if (s.axial <= layer.range.x)
-		return 1.0;
-	if (source <= 0.0)
-		return shadow_filter(lamp_depth_compare, index, s, one_texel, 4);
-
-	float nearest = max(layer.range.x, LAMP_NEAREST_BLOCKER * s.axial);
-	float widest = source * (1.0 / nearest - 1.0 / s.axial);
-	float blocker = lamp_blocker(layer, index, s, max(widest, one_texel));
-
-	if (blocker <= 0.0)
-		return 1.0;
-	float width = source * (1.0 / blocker - 1.0 / s.axial);
-	return shadow_filter(lamp_depth_compare, index, s, clamp(width, one_texel, max(widest, one_texel)),
-			     LAMP_FILTER_TAPS);
+	taps = !far_enough ? 0 : !soft ? LAMP_HARD_TAPS : count > 0.0 ? LAMP_FILTER_TAPS : 0;
+	return shadow_filter(lamp_depth_compare, index, s,
+			     soft ? clamp(width, one_texel, widest) : one_texel, taps);
 }

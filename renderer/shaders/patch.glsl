@@ -9,9 +9,9 @@ struct Patch {
 	ivec4 maps;    // x: first of 5 layers of patch_layers
 };
 
-layout(std430, binding = 5) readonly buffer Patches {
+layout(std140, binding = 5) uniform Patches {
 	ivec4 patch_count; // x
-	Patch patches[];
+	Patch patches[16];
 };
 
 // Integral of an edge of a spherical polygon, z part: angle times unit normal.
@@ -49,35 +49,29 @@ float patch_form_factor(Patch patch_, vec3 p, vec3 n)
 		return 0.0;
 
 	vec3 corners[4] = vec3[4](c - u - v, c + u - v, c + u + v, c - u + v);
-	float sum = 0.0;
+	vec3 leaves = vec3(0.0), enters = vec3(0.0);
+	vec3 a = normalize(corners[0]), b = normalize(corners[1]);
+	vec3 d = normalize(corners[2]), e = normalize(corners[3]);
+	float sum = patch_edge(a, b) + patch_edge(b, d) + patch_edge(d, e) + patch_edge(e, a);
+	// a loop and not a branch: software runs both sides of a branch
+	int edges = c.z - reach >= 0.0 ? 0 : 4;
 
-	if (c.z - reach >= 0.0) {
-		vec3 a = normalize(corners[0]), b = normalize(corners[1]);
-		vec3 d = normalize(corners[2]), e = normalize(corners[3]);
+	sum = edges == 0 ? sum : 0.0;
+	for (int i = 0; i < edges; i++) {
+		vec3 from = corners[i], to_ = corners[(i + 1) & 3];
 
-		sum = patch_edge(a, b) + patch_edge(b, d) + patch_edge(d, e) + patch_edge(e, a);
-	} else {
-		vec3 leaves = vec3(0.0), enters = vec3(0.0);
-		bool cut = false;
-
-		for (int i = 0; i < 4; i++) {
-			vec3 a = corners[i], b = corners[(i + 1) & 3];
-
-			if (a.z <= 0.0 && b.z <= 0.0)
-				continue;
-			if (a.z < 0.0) {
-				a = mix(a, b, a.z / (a.z - b.z));
-				enters = normalize(a);
-				cut = true;
-			} else if (b.z < 0.0) {
-				b = mix(a, b, a.z / (a.z - b.z));
-				leaves = normalize(b);
-				cut = true;
-			}
-			sum += patch_edge(normalize(a), normalize(b));
+		if (from.z <= 0.0 && to_.z <= 0.0)
+			continue;
+		if (from.z < 0.0) {
+			from = mix(from, to_, from.z / (from.z - to_.z));
+			enters = normalize(from);
+		} else if (to_.z < 0.0) {
+			to_ = mix(from, to_, from.z / (from.z - to_.z));
+			leaves = normalize(to_);
 		}
-		if (cut)
-			sum += patch_edge(leaves, enters);
+		sum += patch_edge(normalize(from), normalize(to_));
 	}
-	return max(-sum, sum); // seen from its front the order of corners is known
+	// along the horizon, back to where the first edge came up; 0 when none was cut
+	sum += patch_edge(leaves, enters);
+	return abs(sum);
 }

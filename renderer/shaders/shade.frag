@@ -63,10 +63,12 @@ vec3 from_lamps(Point p)
 		vec3 e = lamp_irradiance(lamp, p.position, to_lamp, metres);
 		float c = dot(p.normal, to_lamp);
 
-		if (c <= 0.0 || e == vec3(0.0))
-			continue;
-		sum += reflectance(p, to_lamp) * e *
-		       (c * lamp_visibility(lamp, p.position, p.normal, to_lamp));
+		bool reaches = c > 0.0 && e != vec3(0.0);
+
+		float visible = lamp_visibility(lamp, p.position, p.normal, to_lamp, metres,
+						reaches);
+
+		sum += reaches ? reflectance(p, to_lamp) * e * (c * visible) : vec3(0.0);
 	}
 	return sum;
 }
@@ -80,16 +82,15 @@ vec3 from_patches(Point p)
 	for (int i = 0; i < patch_count.x; i++) {
 		Patch patch_ = patches[i];
 		float f = patch_form_factor(patch_, p.position, p.normal);
-
-		if (f <= 0.0)
-			continue;
 		vec3 to_patch = patch_.centre.xyz - p.position;
 		float metres = length(to_patch);
 
 		to_patch /= metres;
-		sum += reflectance(p, to_patch) * patch_.radiance.rgb *
-		       (PI * f * medium_to_surface(metres) *
-			patch_visibility(patch_, p.position, p.normal));
+		float visible = patch_visibility(patch_, p.position, p.normal, f > 0.0);
+
+		sum += f > 0.0 ? reflectance(p, to_patch) * patch_.radiance.rgb *
+					 (PI * f * medium_to_surface(metres) * visible)
+			       : vec3(0.0);
 	}
 	return sum;
 }

@@ -3,7 +3,8 @@
 // away as nearby, and outside of a map (border 0) everything is lit.
 struct MapLayer {
 	mat4 clip;   // scene to the layer's clip space
-	vec4 extent; // x: half width at distance 1 (perspective) or metres; y: pixels; z: 1 perspective
+	vec4 extent; // x: half width at distance 1 (perspective) or metres; y: pixels;
+		     // z: 1 perspective; w: change of depth per 1/distance, or per metre
 	vec4 range;  // x: near, y: far, metres
 };
 
@@ -11,57 +12,40 @@ struct MapLayer {
 // depth goes on beside it, so that taps on a slanted plane do not shade it.
 struct ShadowPoint {
 	vec3 uvz;
-	vec2 slope; // change of depth per uv
+	vec2 slope;  // change of depth per uv
 	float axial; // metres along the layer's axis
 };
 
-vec3 shadow_uvz(MapLayer layer, vec3 p, out float w)
+// from: vector from the lamp to p, its length metres. The comparison reads 2 x 2
+// texels, so the plane's depth may be off by one and a half texels times its
+// slope: the point is lifted by so much, and no more (a shadow parts from what
+// throws it by up to that and 1 mm).
+ShadowPoint shadow_point(MapLayer layer, vec3 p, vec3 n, vec3 from, float metres)
 {
-	vec4 clip = layer.clip * vec4(p, 1.0);
-
-	w = clip.w;
-	return clip.xyz / clip.w * vec3(0.5, 0.5, 1.0) + vec3(0.5, 0.5, 0.0);
-}
-
-// A texel's width at the surface, metres.
-float shadow_texel(MapLayer layer, vec3 p)
-{
-	float w = layer.clip[0].w * p.x + layer.clip[1].w * p.y + layer.clip[2].w * p.z +
-		  layer.clip[3].w;
-
-	return 2.0 * layer.extent.x * w / layer.extent.y;
-}
-
-// The comparison reads 2 x 2 texels, so the plane's depth may be off by one and
-// a half texels times its slope: the point is lifted by so much, and no more
-// (a shadow parts from what throws it by up to that and 1 mm).
-ShadowPoint shadow_point(MapLayer layer, vec3 p, vec3 n, vec3 to_lamp)
-{
-	float c = dot(n, to_lamp);
-	float lift = 1.5 * shadow_texel(layer, p) * sqrt(max(1.0 - c * c, 0.0)) + 1e-3;
-	vec3 q = p + n * lift;
-	vec3 helper = abs(n.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
-	vec3 tangent = normalize(cross(helper, n));
-	vec3 bitangent = cross(n, tangent);
+	vec4 at = layer.clip * vec4(p, 1.0);
+	vec4 along = layer.clip * vec4(n, 0.0);
+	float c = dot(n, from);
+	float sine = sqrt(max(metres * metres - c * c, 0.0)) / metres;
+	float lift = 3.0 * layer.extent.x * at.w / layer.extent.y * sine + 1e-3;
 	ShadowPoint s;
-	float w;
 
-	s.uvz = shadow_uvz(layer, q, w);
-	// ortho: w is 1, the distance comes from the depth
-	s.axial = layer.extent.z != 0.0 ? w : mix(layer.range.y, layer.range.x, s.uvz.z);
-
-	// A projective map takes planes to planes: depth is affine in uv.
-	float h = 0.02 * s.axial;
-	vec3 a = shadow_uvz(layer, q + tangent * h, w) - s.uvz;
-	vec3 b = shadow_uvz(layer, q + bitangent * h, w) - s.uvz;
-	float det = a.x * b.y - a.y * b.x;
-
-	s.slope = abs(det) > 1e-12 ? vec2(a.z * b.y - b.z * a.y, b.z * a.x - a.z * b.x) / det
-				   : vec2(0.0);
+	at += along * lift;
+	s.uvz = at.xyz / at.w * vec3(0.5, 0.5, 1.0) + vec3(0.5, 0.5, 0.0);
+	if (layer.extent.z != 0.0) {
+		// On a plane 1/distance, and so depth, is affine in uv.
+		s.axial = at.w;
+		s.slope = along.xy * (2.0 * layer.extent.x * layer.extent.x * layer.extent.w /
+				      min(c + lift, -1e-5 * metres));
+	} else {
+		// along.z is the normal's part along the axis times the change of depth
+		s.axial = mix(layer.range.y, layer.range.x, s.uvz.z);
+		s.slope = along.xy * (-2.0 * layer.extent.x * layer.extent.x * layer.extent.w *
+				      layer.extent.w / max(along.z, 1e-5 * layer.extent.w));
+	}
 	return s;
 }
 
-// Share of `taps` comparisons on a disc (uv radius) that are lit. The spiral
+// Share of `taps` comparisons on a disc (uv radius) that are lit; 1 for none. The spiral
 // (Vogel 1979) is the same everywhere: no term may depend on the picture.
 float shadow_filter(sampler2DArrayShadow map, int index, ShadowPoint s, float radius, int taps)
 {
@@ -76,7 +60,7 @@ float shadow_filter(sampler2DArrayShadow map, int index, ShadowPoint s, float ra
 					 s.uvz.z + dot(s.slope, at)));
 		direction = golden * direction;
 	}
-	return lit / float(taps);
+	return taps > 0 ? lit / float(taps) : 1.0;
 }
 
 float shadow_axial(MapLayer layer, float depth)

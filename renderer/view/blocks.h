@@ -1,5 +1,5 @@
 /*
- * The blocks that the view's shaders read, byte for byte (std140, std430),
+ * The blocks that the view's shaders read, byte for byte (std140),
  * and where they are bound. Bindings 0 (materials) and from 8 on (global
  * illumination) belong to others.
  */
@@ -9,11 +9,13 @@
 #include <stdint.h>
 
 enum view_binding {
-	VIEW_BINDING_FRAME = 1, /* uniform buffer; the others are storage buffers */
+	/* uniform buffers: what all pixels read alike is read once, not once a pixel */
+	VIEW_BINDING_FRAME = 1,
 	VIEW_BINDING_LAMPS = 3,
 	VIEW_BINDING_LAMP_LAYERS = 4,
 	VIEW_BINDING_PATCHES = 5,
 	VIEW_BINDING_PATCH_LAYERS = 6,
+	/* storage buffer */
 	VIEW_BINDING_COUNTERS = 7,
 };
 
@@ -23,6 +25,9 @@ enum view_unit {
 	VIEW_UNIT_LAMP_DEPTH = 6,
 	VIEW_UNIT_PATCH_COMPARE = 7,
 };
+
+/* Layers of the largest block: sixteen cubes. The shaders' arrays have fixed sizes. */
+#define VIEW_LAYERS_MAX 96
 
 /* Frame in shaders/medium.glsl. */
 struct frame_block {
@@ -43,7 +48,8 @@ struct lamp_record {
 /* MapLayer in shaders/shadow.glsl. */
 struct map_layer {
 	float clip[16];  /* scene to clip space, x and y -1..1, depth 1 (near) .. 0 (far) */
-	float extent[4]; /* half width at distance 1, or metres; pixels; 1 perspective */
+	float extent[4]; /* half width at distance 1, or metres; pixels; 1 perspective;
+			  * change of depth per 1/distance, ortho: per metre towards the eye */
 	float range[4];  /* near, far, metres */
 };
 

@@ -184,7 +184,7 @@ static void draw_rsm(struct emissive_stage *stage)
 
 void emissive_draw(struct emissive_stage *stage)
 {
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, VIEW_BINDING_PATCHES, stage->buffer);
+	glBindBufferBase(GL_UNIFORM_BUFFER, VIEW_BINDING_PATCHES, stage->buffer);
 	if (stage->depth_old)
 		draw_depth(stage);
 	if (stage->rsm)
@@ -195,10 +195,10 @@ void emissive_draw(struct emissive_stage *stage)
 
 void emissive_bind(const struct emissive_stage *stage)
 {
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, VIEW_BINDING_PATCHES, stage->buffer);
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, VIEW_BINDING_PATCH_LAYERS, stage->maps.buffer);
+	glBindBufferBase(GL_UNIFORM_BUFFER, VIEW_BINDING_PATCHES, stage->buffer);
+	glBindBufferBase(GL_UNIFORM_BUFFER, VIEW_BINDING_PATCH_LAYERS, stage->maps.buffer);
 	glBindTextureUnit(VIEW_UNIT_PATCH_COMPARE, stage->maps.texture);
-	glBindSampler(VIEW_UNIT_PATCH_COMPARE, stage->maps.compare);
+	glBindSampler(VIEW_UNIT_PATCH_COMPARE, 0);
 }
 
 int emissive_pixels(const struct emissive_stage *stage)

@@ -82,7 +82,7 @@ void map_layer_perspective(struct map_layer *out, const struct map_basis *basis,
 	const double z[2] = { near_m / (far_m - near_m), far_m * near_m / (far_m - near_m) };
 
 	*out = (struct map_layer){
-		.extent = { (float)half, (float)pixels, 1, 0 },
+		.extent = { (float)half, (float)pixels, 1, (float)z[1] },
 		.range = { (float)near_m, (float)far_m, 0, 0 },
 	};
 	fill_clip(out, basis, origin, 1 / half, z, true);
@@ -94,7 +94,7 @@ void map_layer_ortho(struct map_layer *out, const struct map_basis *basis, const
 	const double z[2] = { 1 / (far_m - near_m), far_m / (far_m - near_m) };
 
 	*out = (struct map_layer){
-		.extent = { (float)half, (float)pixels, 0, 0 },
+		.extent = { (float)half, (float)pixels, 0, (float)z[0] },
 		.range = { (float)near_m, (float)far_m, 0, 0 },
 	};
 	fill_clip(out, basis, origin, 1 / half, z, false);
@@ -122,7 +122,7 @@ int depth_maps_init(struct depth_maps *maps, int pixels, int layers)
 	glSamplerParameteri(maps->compare, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
 	glSamplerParameteri(maps->compare, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
 	glCreateBuffers(1, &maps->buffer);
-	glNamedBufferStorage(maps->buffer, (GLsizeiptr)(sizeof(struct map_layer) * (size_t)layers),
+	glNamedBufferStorage(maps->buffer, (GLsizeiptr)(sizeof(struct map_layer) * VIEW_LAYERS_MAX),
 			     NULL, GL_DYNAMIC_STORAGE_BIT);
 	glCreateFramebuffers(1, &maps->framebuffer);
 	glNamedFramebufferTextureLayer(maps->framebuffer, GL_DEPTH_ATTACHMENT, maps->texture, 0, 0);

@@ -283,7 +283,7 @@ void shadow_draw(struct shadow_stage *stage, bool medium_changed)
 {
 	stage->block.count[0] = stage->lamp_count;
 	glNamedBufferSubData(stage->buffer, 0, sizeof(stage->block), &stage->block);
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, VIEW_BINDING_LAMPS, stage->buffer);
+	glBindBufferBase(GL_UNIFORM_BUFFER, VIEW_BINDING_LAMPS, stage->buffer);
 	for (int i = 0; i < stage->lamp_count; i++) {
 		if (medium_changed)
 			stage->state[i].rsm_old = true;
@@ -293,8 +293,8 @@ void shadow_draw(struct shadow_stage *stage, bool medium_changed)
 
 void shadow_bind(const struct shadow_stage *stage)
 {
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, VIEW_BINDING_LAMPS, stage->buffer);
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, VIEW_BINDING_LAMP_LAYERS, stage->maps.buffer);
+	glBindBufferBase(GL_UNIFORM_BUFFER, VIEW_BINDING_LAMPS, stage->buffer);
+	glBindBufferBase(GL_UNIFORM_BUFFER, VIEW_BINDING_LAMP_LAYERS, stage->maps.buffer);
 	glBindTextureUnit(VIEW_UNIT_LAMP_COMPARE, stage->maps.texture);
 	glBindSampler(VIEW_UNIT_LAMP_COMPARE, stage->maps.compare);
 	glBindTextureUnit(VIEW_UNIT_LAMP_DEPTH, stage->maps.texture);
