@@ -19,5 +19,5 @@ clang-tidy cppcheck: $(BUILT_SOURCES)
 EXTRA_DIST += \
 	.clang-format .clang-tidy .editorconfig .ci/run \
 	scripts/check scripts/count.sh scripts/cppcheck.supp scripts/demo \
-	scripts/lib.sh scripts/lint scripts/lsan.supp \
+	scripts/lib.sh scripts/lint scripts/results scripts/lsan.supp \
 	scripts/packages scripts/packages.check
