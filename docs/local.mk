@@ -4,3 +4,4 @@ dist_doc_DATA += README.md CHANGELOG.md LICENSE docs/architecture.md docs/operat
 include $(top_srcdir)/docs/man/local.mk
 dist_doc_DATA += docs/protocol.md
 dist_doc_DATA += docs/control.md
+dist_doc_DATA += docs/models.md

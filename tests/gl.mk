@@ -26,3 +26,25 @@ tests_unit_test_import_SOURCES = tests/unit/test_import.c tests/unit/unit.h test
 	tests/unit/glb.h
 tests_unit_test_import_CFLAGS = $(GL_TEST_CFLAGS) $(ASSIMP_CFLAGS) $(JPEG_CFLAGS)
 tests_unit_test_import_LDADD = $(GL_TEST_LIBS)
+
+check_PROGRAMS += tests/unit/test_mesh
+TESTS += tests/unit/test_mesh
+tests_unit_test_mesh_SOURCES = tests/unit/test_mesh.c tests/unit/unit.h tests/unit/gl.h
+tests_unit_test_mesh_CFLAGS = $(GL_TEST_CFLAGS)
+tests_unit_test_mesh_LDADD = $(GL_TEST_LIBS)
+
+if FUZZERS
+noinst_PROGRAMS += tests/fuzz/fuzz_exr tests/fuzz/fuzz_glb tests/fuzz/fuzz_texture
+endif
+tests_fuzz_fuzz_exr_SOURCES = tests/fuzz/fuzz_exr.c
+tests_fuzz_fuzz_exr_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS)
+tests_fuzz_fuzz_exr_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_exr_LDADD = $(RENDERER_LIBS)
+tests_fuzz_fuzz_glb_SOURCES = tests/fuzz/fuzz_glb.c
+tests_fuzz_fuzz_glb_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(ASSIMP_CFLAGS)
+tests_fuzz_fuzz_glb_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_glb_LDADD = $(RENDERER_LIBS)
+tests_fuzz_fuzz_texture_SOURCES = tests/fuzz/fuzz_texture.c
+tests_fuzz_fuzz_texture_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(ASSIMP_CFLAGS)
+tests_fuzz_fuzz_texture_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_texture_LDADD = $(RENDERER_LIBS)

@@ -1,5 +1,5 @@
 /*
- * Materials to Lambert + normalised Blinn-Phong. docs/scene-import.md gives the
+ * Materials to Lambert + normalised Blinn-Phong. docs/models.md gives the
  * mapping in words; the exponent is m = 2/alpha^2 - 2 with alpha = roughness^2,
  * which gives both lobes the same width (Karis, "Specular BRDF Reference", 2013).
  */

@@ -24,7 +24,7 @@ struct scene_vertex {
 /*
  * Lambert plus half-vector normalised Blinn-Phong (seed 004, eq. 3.2):
  *   f = diffuse/pi + (shininess + 8)/(8 pi) specular cos^shininess(theta_h)
- * mapped from glTF metallic/roughness as docs/scene.md says.
+ * mapped from glTF metallic/roughness as docs/models.md says.
  */
 struct scene_material {
 	char name[64];

@@ -583,7 +583,7 @@ static void test_own_scenes(void **state)
 		bool emissive;
 	} scenes[] = {
 		{ "cornell", 38, true }, { "cornell-spot", 30, false }, { "box", 66, false },
-		{ "grotto", 309, true },
+		{ "grotto", 300, true },
 	};
 	const char *source = getenv("srcdir") ? getenv("srcdir") : ".";
 
