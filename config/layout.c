@@ -99,7 +99,7 @@ static struct layout *build(struct layout_file *file, const char *path)
 		nodes += file->walls[w].node_count;
 	layout->path = strdup(path);
 	layout->walls = calloc(file->wall_count, sizeof *layout->walls);
-	layout->nodes = calloc(nodes, sizeof *layout->nodes);
+	layout->nodes = calloc(nodes + 1, sizeof *layout->nodes);
 	layout->trackers = calloc(file->tracker_count + 1, sizeof *layout->trackers);
 	if (!layout->path || !layout->walls || !layout->nodes || !layout->trackers) {
 		layout_destroy(&layout);
