@@ -190,19 +190,26 @@ static uint64_t common_base(const struct fdp_master *m, uint64_t live)
 	return live ? base : 0;
 }
 
-static void send_delta(struct fdp_master *m, uint64_t live)
+/*
+ * On a lossy wire the last fragment goes twice: it has no successor whose
+ * arrival would show that it is missing.
+ */
+static void send_delta(struct fdp_master *m, int to)
 {
-	const unsigned copies = fdp_master_twice(m) && m->delta.count == 1 ? 2 : 1;
+	fdp_outbox_post(&m->out, to, &m->delta);
+	if (fdp_master_twice(m))
+		fdp_outbox_fragment(&m->out, to, &m->delta, m->delta.count - 1u);
+}
 
-	for (unsigned c = 0; c < copies; c++) {
-		if (m->params.multicast) {
-			fdp_outbox_post(&m->out, FDP_TO_ALL, &m->delta);
-			continue;
-		}
-		for (size_t i = 0; i < m->params.node_count; i++)
-			if (live & BIT(i))
-				fdp_outbox_post(&m->out, (int)i, &m->delta);
+static void send_delta_to(struct fdp_master *m, uint64_t live)
+{
+	if (m->params.multicast) {
+		send_delta(m, FDP_TO_ALL);
+		return;
 	}
+	for (size_t i = 0; i < m->params.node_count; i++)
+		if (live & BIT(i))
+			send_delta(m, (int)i);
 }
 
 /* A frame boundary: who has acknowledged its snapshot counts from here on. */
@@ -255,7 +262,7 @@ int fdp_master_begin(struct fdp_master *m, const struct param_state *state, uint
 	fdp_master_begin_repairs(m);
 	if (live) {
 		fdp_master_write_state(m, &m->delta, FDP_DELTA, common_base(m, live));
-		send_delta(m, live);
+		send_delta_to(m, live);
 	}
 	refresh_snapshots(m, now_ns);
 	fdp_master_finish_if_over(m, now_ns);

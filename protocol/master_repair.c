@@ -75,6 +75,9 @@ static void repair(struct fdp_master *m, unsigned node, const struct fdp_letter 
 		m->repaired_ns[index] = now_ns;
 	m->counters.repairs++;
 	fdp_outbox_fragment(&m->out, all ? FDP_TO_ALL : (int)node, letter, index);
+	/* To one node the NACK's own second copy brings it twice. */
+	if (all && fdp_master_twice(m) && spend(m, letter, index))
+		fdp_outbox_fragment(&m->out, FDP_TO_ALL, letter, index);
 }
 
 void fdp_master_on_nack(struct fdp_master *m, unsigned node, const struct fdp_nack *nack,

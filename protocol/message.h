@@ -51,7 +51,7 @@ struct fdp_nack {
 	uint8_t missing[FDP_BITMAP_BYTES];
 };
 
-#define FDP_TWICE 1u /* the way is lossy: READY is worth sending twice */
+#define FDP_TWICE 1u /* the way is lossy: READY and NACK are worth sending twice */
 /* PROBE and SWAP. */
 struct fdp_announce {
 	uint64_t frame, swapped; /* under way (or last), last swapped */

@@ -42,8 +42,9 @@ static void send_ready(struct fdp_node *n, int64_t now_ns)
 static void send_nack(struct fdp_node *n, const struct fdp_nack *nack, int64_t now_ns)
 {
 	n->nacked_ns = now_ns;
-	fdp_outbox_send(&n->out, FDP_TO_ALL, FDP_NACK,
-			fdp_nack_encode(nack, fdp_outbox_body(&n->out), FDP_BODY_MAX));
+	for (int i = 0; i < (n->twice ? 2 : 1); i++)
+		fdp_outbox_send(&n->out, FDP_TO_ALL, FDP_NACK,
+				fdp_nack_encode(nack, fdp_outbox_body(&n->out), FDP_BODY_MAX));
 }
 
 static void ask_for_snapshot(struct fdp_node *n, uint64_t frame, int64_t now_ns)
