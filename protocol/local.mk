@@ -6,6 +6,7 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/key.c protocol/key.h \
 	protocol/master.c protocol/master.h protocol/master_private.h \
 	protocol/master_join.c \
+	protocol/master_receive.c \
 	protocol/master_repair.c \
 	protocol/message.c protocol/message.h \
 	protocol/node.c protocol/node.h protocol/node_private.h \

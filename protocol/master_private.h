@@ -1,6 +1,7 @@
 /*
- * Inside the master's half of FDP: master.c has the frame, master_join.c who
- * may take part, master_repair.c what is sent again.
+ * Inside the master's half of FDP: master.c has the frame, master_receive.c
+ * what arrives, master_join.c who may take part, master_repair.c what is sent
+ * again.
  */
 #ifndef GROTTO_PROTOCOL_MASTER_PRIVATE_H
 #define GROTTO_PROTOCOL_MASTER_PRIVATE_H

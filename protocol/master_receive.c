@@ -1,0 +1,179 @@
+/* What arrives at the master: reports of the nodes, and who may not speak. */
+#include "protocol/master_private.h"
+
+#define BIT(node) (UINT64_C(1) << (node))
+
+/* True when the node holds what we hold for a frame that we still know. */
+static bool state_agrees(struct fdp_master *m, unsigned node, const struct fdp_report *report,
+			 int64_t now_ns)
+{
+	struct fdp_peer *peer = &m->peers[node];
+	const unsigned slot = report->frame % FDP_HASH_RING;
+	struct fdp_master_event event = {
+		.kind = FDP_MASTER_MISMATCH, .node = (int)node, .frame = report->frame,
+		.ours = m->hashes[slot], .theirs = report->hash,
+	};
+
+	if (m->hash_frames[slot] != report->frame)
+		return false;
+	if (report->hash == m->hashes[slot])
+		return true;
+	fdp_master_want_snapshot(m, node);
+	if (report->frame == m->barrier.frame) {
+		m->barrier.acked &= ~BIT(node);
+		m->barrier.ready &= ~BIT(node);
+	}
+	if (report->frame != peer->mismatch_frame || !peer->status.mismatches) {
+		peer->mismatch_frame = report->frame;
+		peer->status.mismatches++;
+		fdp_master_say(m, &event);
+		fdp_master_send_snapshot(m, node, now_ns);
+	}
+	return false;
+}
+
+static void note_acked(struct fdp_master *m, unsigned node, const struct fdp_report *report)
+{
+	struct fdp_peer *peer = &m->peers[node];
+	const struct fdp_master_event joined = {
+		.kind = FDP_MASTER_JOINED, .node = (int)node, .frame = m->frame
+	};
+
+	if (peer->wants_snapshot && report->frame < peer->snapshot_from)
+		return; /* from before its state went wrong */
+	peer->wants_snapshot = false;
+	if (report->frame > peer->status.acked)
+		peer->status.acked = report->frame;
+	if (report->frame == m->barrier.frame)
+		m->barrier.acked |= BIT(node);
+	if (peer->state == FDP_PEER_JOINING && !peer->synced) {
+		peer->synced = true;
+		fdp_master_say(m, &joined);
+	}
+}
+
+static void on_ready(struct fdp_master *m, unsigned node, const struct fdp_report *report,
+		     int64_t now_ns)
+{
+	struct fdp_peer *peer = &m->peers[node];
+
+	if (report->frame > peer->status.ready)
+		peer->status.ready = report->frame;
+	peer->status.render_us = report->render_us;
+	if (!fdp_peer_counts(peer->state) || report->frame != m->frame)
+		return;
+	if (!m->underway) {
+		/* It has not seen the SWAP: lost, unless the two have just crossed. */
+		if (m->barrier.ready & BIT(node) && now_ns - m->swapped_ns > m->params.probe_ns / 4)
+			fdp_master_saw_loss(m);
+		fdp_master_announce(m, (int)node, FDP_SWAP);
+		return;
+	}
+	if (m->barrier.ready & BIT(node))
+		return;
+	peer->status.ready_after_ns = now_ns - m->barrier.begun_ns;
+	peer->missed_row = 0;
+	peer->state = fdp_peer_next(peer->state, FDP_PEER_READIES);
+	m->barrier.ready |= BIT(node);
+	fdp_master_finish_if_over(m, now_ns);
+}
+
+static void on_report(struct fdp_master *m, unsigned node, enum fdp_kind kind,
+		      const struct fdp_report *report, int64_t now_ns)
+{
+	struct fdp_peer_status *status = &m->peers[node].status;
+
+	if (report->swapped_count > status->swapped) {
+		status->swapped = report->swapped_count;
+		status->swapped_frame = report->swapped_frame;
+		status->swap_local_ns = report->swap_ns;
+	}
+	if (kind == FDP_SWAPPED || !state_agrees(m, node, report, now_ns))
+		return;
+	note_acked(m, node, report);
+	if (kind == FDP_READY)
+		on_ready(m, node, report, now_ns);
+}
+
+/* An authentic, new datagram of a present peer. */
+static enum fdp_verdict dispatch(struct fdp_master *m, const struct fdp_header *h,
+				 const uint8_t *body, int64_t now_ns)
+{
+	struct fdp_report report;
+	struct fdp_nack nack;
+	uint64_t frame;
+
+	switch (h->kind) {
+	case FDP_ACK:
+	case FDP_READY:
+	case FDP_SWAPPED:
+		if (fdp_report_decode(body, h->payload_len, &report) || report.frame > m->frame)
+			return FDP_BAD_FORMAT;
+		on_report(m, h->sender, h->kind, &report, now_ns);
+		return FDP_GOOD;
+	case FDP_NACK:
+		if (fdp_nack_decode(body, h->payload_len, &nack))
+			return FDP_BAD_FORMAT;
+		fdp_master_on_nack(m, h->sender, &nack, now_ns);
+		return FDP_GOOD;
+	case FDP_LEAVE:
+		if (fdp_leave_decode(body, h->payload_len, &frame))
+			return FDP_BAD_FORMAT;
+		fdp_master_on_leave(m, h->sender, now_ns);
+		return FDP_GOOD;
+	default:
+		return FDP_BAD_FORMAT;
+	}
+}
+
+/* A node that is not in the room but thinks so is told, rarely and briefly. */
+static void tell_stranger(struct fdp_master *m, unsigned node, int64_t now_ns)
+{
+	struct fdp_peer *peer = &m->peers[node];
+
+	if (peer->told_ns && now_ns - peer->told_ns < m->params.probe_ns)
+		return;
+	peer->told_ns = now_ns;
+	fdp_master_announce(m, (int)node, FDP_PROBE);
+}
+
+static enum fdp_verdict take(struct fdp_master *m, const struct fdp_header *h, const uint8_t *body,
+			     int64_t now_ns)
+{
+	struct fdp_peer *peer = &m->peers[h->sender];
+
+	if (h->kind == FDP_JOIN) {
+		struct fdp_join join;
+
+		if (h->session && h->session != m->params.session)
+			return FDP_BAD_SESSION;
+		if (fdp_join_decode(body, h->payload_len, &join) || join.index != h->sender)
+			return FDP_BAD_FORMAT;
+		fdp_master_on_join(m, h, &join, now_ns);
+		return FDP_GOOD;
+	}
+	if (peer->state == FDP_PEER_ABSENT && !peer->joins)
+		return FDP_BAD_SESSION;
+	if (!fdp_replay_take(&peer->window, h->sequence))
+		return FDP_BAD_REPLAY;
+	peer->status.last_heard_ns = now_ns;
+	if (!fdp_peer_present(peer->state)) {
+		if (h->kind != FDP_LEAVE)
+			tell_stranger(m, h->sender, now_ns);
+		return FDP_GOOD;
+	}
+	return dispatch(m, h, body, now_ns);
+}
+
+int fdp_master_receive(struct fdp_master *m, const uint8_t *bytes, size_t len, int64_t now_ns)
+{
+	struct fdp_header h;
+	enum fdp_verdict verdict = fdp_gate_open(&m->gate, bytes, len, &h);
+
+	m->counters.datagrams_in++;
+	m->counters.bytes_in += len;
+	if (verdict == FDP_GOOD)
+		verdict = take(m, &h, bytes + FDP_HEADER_BYTES, now_ns);
+	fdp_count_bad(&m->counters, verdict);
+	return verdict == FDP_GOOD ? h.sender : fdp_verdict_result(verdict);
+}
