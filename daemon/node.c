@@ -11,6 +11,8 @@
 #include <string.h>
 
 #define RECEIVE_MOST 256
+/* A master that waits for a slow node still speaks several times a second. */
+#define SILENCE_NS (5 * GR_NS_PER_S)
 #define GPU_SLICE_NS GR_NS_PER_MS /* the longest that the socket waits for the GPU */
 
 static void send_datagram(void *ctx, const uint8_t *bytes, size_t len)
@@ -296,8 +298,7 @@ static int create_protocol(struct node *n)
 		.index = (uint16_t)n->params.index,
 		.name = layout->nodes[n->params.index].name,
 		.datagram_max = net_datagram_max(&layout->network),
-		/* A room that waits for a slow node is silent for as long as the barrier's deadline. */
-		.silence_ns = 2 * layout->rates.barrier_deadline_ns + 2 * GR_NS_PER_S,
+		.silence_ns = SILENCE_NS,
 	};
 	struct fdp_node_ops ops = { send_datagram, on_event, n };
 	int r;
