@@ -71,7 +71,7 @@ static inline uint8_t gr_read_u8(struct gr_reader *r)
 static inline uint16_t gr_read_u16(struct gr_reader *r)
 {
 	const uint8_t *p = gr_read_bytes(r, 2);
-	return p ? (uint16_t)(p[0] | p[1] << 8) : 0;
+	return p ? (uint16_t)((unsigned)p[0] | (unsigned)p[1] << 8) : 0;
 }
 
 static inline uint32_t gr_read_u32(struct gr_reader *r)
