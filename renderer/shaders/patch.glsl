@@ -4,13 +4,14 @@ struct Patch {
 	vec4 u;        // half side, metres; w: 1/|u|
 	vec4 v;        // half side, metres; w: 1/|v|
 	vec4 normal;   // unit, the side that emits; u x v is along it
-	vec4 origin;   // on the surface: where its shadows are seen from
+	vec4 origin;   // on the surface: where its shadows are seen from; w: its maps' far, metres
 	vec4 radiance; // rgb W/(m^2 sr)
 	ivec4 maps;    // x: first of 5 layers of patch_layers
 };
 
 layout(std140, binding = 5) uniform Patches {
 	ivec4 patch_count; // x
+	vec4 patch_map;    // of the hemicubes, x: half width at distance 1, y: pixels, z: near, metres
 	Patch patches[16];
 };
 
@@ -28,35 +29,34 @@ float patch_edge(vec3 a, vec3 b)
 	return (a.x * b.y - a.y * b.x) * angle_over_sine;
 }
 
+// Any two directions across n, and n, as rows.
+mat3 patch_frame(vec3 n)
+{
+	vec3 helper = abs(n.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+	vec3 tangent = normalize(cross(helper, n));
+
+	return transpose(mat3(tangent, cross(n, tangent), n));
+}
+
 // Lambert's polygon formula: share of the cosine-weighted hemisphere over
-// (p, n) that the rectangle covers, 0..1; cut at the horizon.
-float patch_form_factor(Patch patch_, vec3 p, vec3 n)
+// (p, n) that the rectangle covers, 0..1; cut at the horizon. frame: of n.
+float patch_form_factor(Patch patch_, vec3 p, mat3 frame_n)
 {
 	vec3 to = patch_.centre.xyz - p;
 
-	if (dot(to, patch_.normal.xyz) >= 0.0)
-		return 0.0; // behind it
-
-	vec3 helper = abs(n.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
-	vec3 tx = normalize(cross(helper, n));
-	vec3 ty = cross(n, tx);
-	vec3 c = vec3(dot(to, tx), dot(to, ty), dot(to, n));
-	vec3 u = vec3(dot(patch_.u.xyz, tx), dot(patch_.u.xyz, ty), dot(patch_.u.xyz, n));
-	vec3 v = vec3(dot(patch_.v.xyz, tx), dot(patch_.v.xyz, ty), dot(patch_.v.xyz, n));
+	vec3 c = frame_n * to, u = frame_n * patch_.u.xyz, v = frame_n * patch_.v.xyz;
 	float reach = abs(u.z) + abs(v.z);
-
-	if (c.z + reach <= 0.0)
-		return 0.0;
-
+	bool seen = dot(to, patch_.normal.xyz) < 0.0 && c.z + reach > 0.0;
 	vec3 corners[4] = vec3[4](c - u - v, c + u - v, c + u + v, c - u + v);
 	vec3 leaves = vec3(0.0), enters = vec3(0.0);
 	vec3 a = normalize(corners[0]), b = normalize(corners[1]);
 	vec3 d = normalize(corners[2]), e = normalize(corners[3]);
 	float sum = patch_edge(a, b) + patch_edge(b, d) + patch_edge(d, e) + patch_edge(e, a);
 	// a loop and not a branch: software runs both sides of a branch
-	int edges = c.z - reach >= 0.0 ? 0 : 4;
+	bool whole = c.z - reach >= 0.0;
+	int edges = whole || !seen ? 0 : 4;
 
-	sum = edges == 0 ? sum : 0.0;
+	sum = whole ? sum : 0.0;
 	for (int i = 0; i < edges; i++) {
 		vec3 from = corners[i], to_ = corners[(i + 1) & 3];
 
@@ -73,5 +73,5 @@ float patch_form_factor(Patch patch_, vec3 p, vec3 n)
 	}
 	// along the horizon, back to where the first edge came up; 0 when none was cut
 	sum += patch_edge(leaves, enters);
-	return abs(sum);
+	return seen ? abs(sum) : 0.0;
 }

@@ -46,11 +46,13 @@ void main()
 	// The back of a one-sided surface stops light and reflects none.
 	if (lean > 0.0 && (gl_FrontFacing || s.two_sided)) {
 #ifdef PATCHES
+		mat3 frame_n = patch_frame(n);
+
 		for (int i = source.x; i < source.x + source.y; i++) {
 			Patch patch_ = patches[i];
 
 			irradiance += patch_.radiance.rgb *
-				      (PI * patch_form_factor(patch_, position, n) *
+				      (PI * patch_form_factor(patch_, position, frame_n) *
 				       medium_to_surface(distance(patch_.centre.xyz, position)));
 		}
 #else

@@ -78,10 +78,11 @@ vec3 from_lamps(Point p)
 vec3 from_patches(Point p)
 {
 	vec3 sum = vec3(0.0);
+	mat3 frame_n = patch_frame(p.normal);
 
 	for (int i = 0; i < patch_count.x; i++) {
 		Patch patch_ = patches[i];
-		float f = patch_form_factor(patch_, p.position, p.normal);
+		float f = patch_form_factor(patch_, p.position, frame_n);
 		vec3 to_patch = patch_.centre.xyz - p.position;
 		float metres = length(to_patch);
 

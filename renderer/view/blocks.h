@@ -14,7 +14,6 @@ enum view_binding {
 	VIEW_BINDING_LAMPS = 3,
 	VIEW_BINDING_LAMP_LAYERS = 4,
 	VIEW_BINDING_PATCHES = 5,
-	VIEW_BINDING_PATCH_LAYERS = 6,
 	/* storage buffer */
 	VIEW_BINDING_COUNTERS = 7,
 };
@@ -23,7 +22,7 @@ enum view_unit {
 	VIEW_UNIT_GBUFFER = 0, /* five */
 	VIEW_UNIT_LAMP_COMPARE = 5,
 	VIEW_UNIT_LAMP_DEPTH = 6,
-	VIEW_UNIT_PATCH_COMPARE = 7,
+	VIEW_UNIT_PATCH_DEPTH = 7,
 };
 
 /* Layers of the largest block: sixteen cubes. The shaders' arrays have fixed sizes. */

@@ -28,6 +28,7 @@ struct emissive_stage {
 
 struct patch_block {
 	int32_t count[4];
+	float map[4]; /* half width at distance 1, pixels, near */
 	struct patch_record patches[PATCHES_MAX];
 };
 
@@ -41,10 +42,34 @@ static float length3(const float v[3])
 	return sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-static void fill_block(const struct emissive_patches *patches, struct patch_block *block)
+static double map_half(int pixels, int margin)
 {
+	return (double)pixels / (pixels - 2 * margin);
+}
+
+/* Farthest corner of the scene's bounds. */
+static double far_of(const struct emissive_stage *stage, const float origin[3])
+{
+	double sum = 0;
+
+	for (int i = 0; i < 3; i++) {
+		double a = fabs((double)stage->min[i] - (double)origin[i]);
+		double b = fabs((double)stage->max[i] - (double)origin[i]);
+
+		sum += fmax(a, b) * fmax(a, b);
+	}
+	return sqrt(sum) * 1.001 + 2 * PATCH_NEAR_M;
+}
+
+static void fill_block(const struct emissive_stage *stage, struct patch_block *block)
+{
+	const struct emissive_patches *patches = &stage->patches;
+
 	memset(block, 0, sizeof(*block));
 	block->count[0] = patches->count;
+	block->map[0] = (float)map_half(stage->maps.pixels, MARGIN_TEXELS);
+	block->map[1] = (float)stage->maps.pixels;
+	block->map[2] = (float)PATCH_NEAR_M;
 	for (int i = 0; i < patches->count; i++) {
 		const struct emissive_patch *p = &patches->patches[i];
 		struct patch_record *r = &block->patches[i];
@@ -56,6 +81,7 @@ static void fill_block(const struct emissive_patches *patches, struct patch_bloc
 		memcpy(r->origin, p->origin, sizeof(p->origin));
 		memcpy(r->radiance, p->radiance, sizeof(p->radiance));
 		r->centre[3] = fmaxf(length3(p->u), length3(p->v));
+		r->origin[3] = (float)far_of(stage, p->origin);
 		r->u[3] = 1 / length3(p->u);
 		r->v[3] = 1 / length3(p->v);
 		r->maps[0] = FACES * i;
@@ -87,7 +113,7 @@ int emissive_create(struct emissive_stage **out, const struct emissive_patches *
 		emissive_destroy(&stage);
 		return result;
 	}
-	fill_block(patches, &block);
+	fill_block(stage, &block);
 	glCreateBuffers(1, &stage->buffer);
 	glNamedBufferStorage(stage->buffer, sizeof(block), &block, 0);
 	*out = stage;
@@ -118,20 +144,14 @@ static void face_view(const struct emissive_stage *stage, const struct map_basis
 {
 	static const int cube_face[FACES] = { 4, 0, 1, 2, 3 };
 	struct map_basis basis;
-	double far = 0;
 
 	map_basis_face(frame, cube_face[face], &basis);
 	for (int i = 0; i < 3; i++) {
-		double a = fabs((double)stage->min[i] - (double)origin[i]);
-		double b = fabs((double)stage->max[i] - (double)origin[i]);
-
-		far += fmax(a, b) * fmax(a, b);
 		view->origin[i] = origin[i];
 		view->axis[i] = (float)-basis.back[i];
 	}
 	map_layer_perspective(&view->layer, &basis, origin,
-			      (double)pixels / (pixels - 2 * margin), PATCH_NEAR_M,
-			      sqrt(far) * 1.001 + 2 * PATCH_NEAR_M, pixels);
+			      map_half(pixels, margin), PATCH_NEAR_M, far_of(stage, origin), pixels);
 }
 
 static void patch_frame(const struct emissive_patch *patch, struct map_basis *frame)
@@ -196,9 +216,8 @@ void emissive_draw(struct emissive_stage *stage)
 void emissive_bind(const struct emissive_stage *stage)
 {
 	glBindBufferBase(GL_UNIFORM_BUFFER, VIEW_BINDING_PATCHES, stage->buffer);
-	glBindBufferBase(GL_UNIFORM_BUFFER, VIEW_BINDING_PATCH_LAYERS, stage->maps.buffer);
-	glBindTextureUnit(VIEW_UNIT_PATCH_COMPARE, stage->maps.texture);
-	glBindSampler(VIEW_UNIT_PATCH_COMPARE, 0);
+	glBindTextureUnit(VIEW_UNIT_PATCH_DEPTH, stage->maps.texture);
+	glBindSampler(VIEW_UNIT_PATCH_DEPTH, 0);
 }
 
 int emissive_pixels(const struct emissive_stage *stage)

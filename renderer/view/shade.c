@@ -86,7 +86,6 @@ void shade_draw(const struct shade_picture *picture, unsigned program,
 	glUniform3f(1, eye[0], eye[1], eye[2]);
 	glUniform1i(2, indirect && parts->gi);
 	glDrawArrays(GL_TRIANGLES, 0, 3);
-	/* samplers stay with their units: the next pass may use those */
+	/* a sampler stays with its unit: the next pass may use that */
 	glBindSampler(VIEW_UNIT_LAMP_COMPARE, 0);
-	glBindSampler(VIEW_UNIT_PATCH_COMPARE, 0);
 }
