@@ -42,7 +42,7 @@ struct gi_stats {
 	bool steady;          /* nothing changes any more; work has stopped */
 	int steps;            /* propagation steps done this frame */
 	uint64_t nonfinite;   /* cells found NaN or Inf: an error, reported once a second */
-	double residual;      /* largest relative change of the last step, -1 unknown */
+	double residual;      /* largest change since the frame before (after a restart: of the last step) over the largest value, some frames old; -1 unknown */
 };
 
 struct gi_method;

@@ -56,9 +56,10 @@ static int upload_links(struct lpv *lpv, const struct links *links)
 	size_t count = links->surface_count + 1;
 	uint32_t *records = calloc(count * 8, sizeof *records);
 	uint32_t *cells = calloc(count, sizeof *cells);
+	struct link_block *blocks = calloc(links->block_count + 1, sizeof *blocks);
 	int result = GR_ERR_NOMEM;
 
-	if (!records || !cells)
+	if (!records || !cells || !blocks)
 		goto out;
 	/* record 0: all open, nothing stopped */
 	for (int w = 0; w < 7; w++)
@@ -78,13 +79,21 @@ static int upload_links(struct lpv *lpv, const struct links *links)
 	lpv->surface_count = (int)links->surface_count;
 	lpv->surface_of = storage(GL_R32UI, lattice_cells(&links->lattice) * sizeof(uint32_t),
 				  links->surface_of);
-	/* struct link_block is the shader's record byte for byte */
+	/* the shader's record byte for byte, but for the direction, which it has unpacked */
+	for (size_t i = 0; i < links->block_count; i++) {
+		const signed char *o = sector_offset[links->blocks[i].j];
+
+		blocks[i] = links->blocks[i];
+		blocks[i].j = (uint32_t)((o[0] + 1) | (o[1] + 1) << 2 | (o[2] + 1) << 4 |
+					 sector_kind((int)links->blocks[i].j) << 6);
+	}
 	_Static_assert(sizeof(struct link_block) == 32, "two vec4");
-	lpv->blocks = storage(GL_RGBA32F, links->block_count * sizeof(struct link_block), links->blocks);
+	lpv->blocks = storage(GL_RGBA32F, links->block_count * sizeof *blocks, blocks);
 	result = dispatch_plan(links->surface_count, 64, &lpv->per_surface);
 out:
 	free(records);
 	free(cells);
+	free(blocks);
 	return result;
 }
 
@@ -134,14 +143,14 @@ static void reflect(struct lpv *lpv)
 	glMemoryBarrier(barriers);
 }
 
-void lpv_propagate(struct lpv *lpv, int steps)
+void lpv_propagate(struct lpv *lpv, int steps, int looks)
 {
 	const int *size = lpv->lattice.size;
 
 	glBindTextureUnit(LPV_UNIT_SURFACE_OF, lpv->surface_of.texture);
 	glBindTextureUnit(LPV_UNIT_SURFACES, lpv->surfaces.texture);
 	for (int i = 0; i < steps; i++) {
-		bool look = i >= steps - 2; /* the check compares the last two */
+		bool look = i >= steps - looks;
 
 		glBindTextureUnit(LPV_UNIT_SENT, lpv->sent[lpv->sending].texture);
 		glMemoryBarrier(barriers);
@@ -222,7 +231,8 @@ static int update(struct gi_method *method, const struct render_frame *frame,
 	} else {
 		if (restart)
 			steps = lpv->settle_steps;
-		lpv_propagate(lpv, steps);
+		/* the check compares two lights: the last two steps', or two frames' */
+		lpv_propagate(lpv, steps, restart ? 2 : 1);
 	}
 	lpv_check_submit(lpv);
 	lpv->started = true;

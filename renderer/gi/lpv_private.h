@@ -51,7 +51,7 @@ struct lattice_block {
 };
 
 #define LPV_LIGHT_FLOATS 12 /* a cell in the light buffers: F, V of three bands */
-#define LPV_SEGMENT 16	    /* cells that an invocation walks up */
+#define LPV_SEGMENT 8	    /* cells that an invocation walks up */
 #define LPV_RING 4          /* frames until a check is read back */
 
 struct lpv_check {
@@ -102,8 +102,8 @@ struct lpv {
 	uint64_t nonfinite_frames;
 };
 
-/* Steps from the newest light; 0 changes nothing. */
-void lpv_propagate(struct lpv *lpv, int steps);
+/* Steps from the newest light; the last `looks` (1 or 2) of them can be looked at. */
+void lpv_propagate(struct lpv *lpv, int steps, int looks);
 
 /* lpv_thesis.c */
 int lpv_thesis_init(struct lpv_thesis *thesis, const struct lattice *lattice,

@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 #include "lpv_lattice.glsl"
 
 layout(std430, binding = 11) writeonly buffer SourceBuffer { vec4 emitted[]; };
-// Two vec4 each: reflect rgb, direction's number; facing xyz, share that is stopped.
+// Two vec4 each: reflect rgb, direction (offset + 1 in two bits each, kind); facing xyz, share that is stopped.
 layout(binding = 12) uniform samplerBuffer blocks;
 layout(binding = 11) uniform samplerBuffer sent;
 layout(binding = 13) uniform samplerBuffer inject;
@@ -50,13 +50,16 @@ void main()
 	int first = int(word & 0x07ffffffu);
 	int count = int(word >> 27);
 
+	vec3 fb = lattice.sector_b.xyz * vec3(INVERSE[0], INVERSE[1], INVERSE[2]);
+
 	for (int k = first; k < first + count; k++) {
 		vec4 block = texelFetch(blocks, 2 * k);
-		int j = floatBitsToInt(block.w);
-		int n = j > 12 ? j + 1 : j;
-		vec3 o = vec3(n % 3 - 1, (n / 3) % 3 - 1, n / 9 - 1);
-		int kind = int(dot(o, o)) - 1;
-		vec4 weight = vec4(lattice.sector_a[kind], o * (INVERSE[kind] * lattice.sector_b[kind]));
+		int code = floatBitsToInt(block.w);
+		vec3 o = vec3((ivec3(code) >> ivec3(0, 2, 4)) & 3) - 1.0;
+		int kind = code >> 6;
+		float a = kind == 0 ? lattice.sector_a.x : kind == 1 ? lattice.sector_a.y : lattice.sector_a.z;
+		float b_ = kind == 0 ? fb.x : kind == 1 ? fb.y : fb.z;
+		vec4 weight = vec4(a, o * b_);
 		vec4 lobe = vec4(1.0, lattice.sector_mu.w * texelFetch(blocks, 2 * k + 1).xyz);
 
 		red += block.x * kept(dot(weight, r)) * lobe;

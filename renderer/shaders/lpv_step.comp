@@ -13,7 +13,7 @@
 // check: #define LATTICE_X 32
 // check: #define LATTICE_Y 32
 // check: #define LATTICE_Z 32
-// check: #define SEGMENT 16
+// check: #define SEGMENT 8
 // check: #define WITH_LOOK
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 1) in;
 
@@ -46,7 +46,8 @@ float through(uint words[7], int dx, int dy, int dz)
 	int n = dx + 1 + 3 * (dy + 1) + 9 * (dz + 1);
 	int j = n > 13 ? n - 1 : n;
 
-	return float((words[j >> 2] >> (8 * (j & 3))) & 255u);
+	// by way of int: AVX2 has no conversion from unsigned
+	return float(int((words[j >> 2] >> (8 * (j & 3))) & 255u));
 }
 
 void add(inout vec4 sum, float phi, float mu, int jx, int jy, int jz)

@@ -1,0 +1,174 @@
+/*
+ * The lattice's cost and error, product and thesis side by side on one device:
+ * bench-lattice [CELLS...] (default 16 32 64). Kernels run in turn; the
+ * fastest of the rounds counts, in GPU time and, since a software renderer's GPU is
+ * this CPU, in processor time. The error is of indirect irradiance in the
+ * Cornell-like room against path tracing, area-weighted over its surfaces.
+ */
+#include "base/log.h"
+#include "base/result.h"
+#include "renderer/gi/lpv_private.h"
+#include "renderer/gl/target.h"
+#include "tests/accuracy/lpv_bench.h"
+#include "tests/accuracy/room.h"
+#include "tests/accuracy/truth.h"
+
+#include <epoxy/gl.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define MAP 128
+#define POINTS 600
+#define PATHS 4000
+#define STEPS 8
+#define ROUNDS 7
+
+static struct truth_texel texels[MAP * MAP];
+static struct truth_sample samples[POINTS];
+static size_t sample_count;
+static float found[3 * POINTS];
+
+struct cost {
+	double gpu_ms, cpu_ms;
+};
+
+static double cpu_ms(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+	return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+static void run(struct lpv *lpv, bool thesis, struct cost *best)
+{
+	unsigned query;
+	GLuint64 ns = 0;
+	double start;
+
+	glFinish();
+	glCreateQueries(GL_TIME_ELAPSED, 1, &query);
+	start = cpu_ms();
+	glBeginQuery(GL_TIME_ELAPSED, query);
+	if (thesis)
+		lpv_thesis_steps(&lpv->thesis, &lpv->lattice, 0, 0, STEPS);
+	else
+		lpv_propagate(lpv, STEPS, 1);
+	glEndQuery(GL_TIME_ELAPSED);
+	glFinish();
+	best->cpu_ms = fmin(best->cpu_ms, cpu_ms() - start);
+	glGetQueryObjectui64v(query, GL_QUERY_RESULT, &ns);
+	best->gpu_ms = fmin(best->gpu_ms, (double)ns * 1e-6);
+	glDeleteQueries(1, &query);
+}
+
+/* Light of the room after `frames` frames against the truth. */
+static int error_of(struct gi_method *method, const struct scene_file *file, struct rsm_set *maps,
+		    int frames, struct truth_error *out)
+{
+	struct bench_probe *probe;
+	struct render_frame frame;
+	int result = bench_probe_create(&probe, method);
+
+	if (result != GR_OK)
+		return result;
+	bench_frame(&frame, file);
+	frame.lamps[0].on = true;
+	for (int c = 0; c < 3; c++)
+		frame.lamps[0].intensity[c] = bench_spot().intensity[c];
+	for (int i = 0; i < frames; i++, frame.frame++)
+		method->ops->update(method, &frame, maps);
+	bench_probe_run(probe, method, samples, sample_count, found);
+	bench_probe_destroy(&probe);
+	*out = truth_compare(samples, found, sample_count);
+	return GR_OK;
+}
+
+static int bench(const struct scene *scene, int cells)
+{
+	struct cost cost[2] = { { INFINITY, INFINITY }, { INFINITY, INFINITY } };
+	struct truth_error error[2];
+	struct gi_method *method[2] = { NULL, NULL };
+	struct rsm_set maps;
+	struct scene_file file;
+	int result = GR_OK;
+
+	bench_maps_init(&maps, MAP, 1);
+	bench_maps_fill(&maps, 0, texels, 1);
+	for (int k = 0; k < 2 && result == GR_OK; k++) {
+		bench_file(&file, cells, STEPS);
+		file.gi.lpv_mode = k ? SCENE_LPV_THESIS : SCENE_LPV_REPAIRED;
+		file.gi.incremental = 0.8f;
+		result = gi_lpv_create(&method[k], scene, &file);
+		if (result == GR_OK)
+			result = error_of(method[k], &file, &maps, k ? 30 : 1, &error[k]);
+	}
+	for (int round = 0; round < ROUNDS && result == GR_OK; round++)
+		for (int k = 0; k < 2; k++) {
+			method[k]->ops->bind(method[k]);
+			run((struct lpv *)method[k], k, &cost[k]);
+		}
+	for (int k = 0; k < 2 && result == GR_OK; k++)
+		printf("%3d^3  %-8s %10.3f %10.3f   %5.2f  %5.2f   %+6.1f %% %7.1f %% %7.1f %%\n", cells,
+		       k ? "thesis" : "product", cost[k].gpu_ms, cost[k].cpu_ms,
+		       cost[1].gpu_ms / cost[k].gpu_ms, cost[1].cpu_ms / cost[k].cpu_ms,
+		       100 * error[k].bias, 100 * error[k].nrmse, 100 * error[k].shape);
+	fflush(stdout);
+	for (int k = 0; k < 2; k++)
+		if (method[k])
+			method[k]->ops->destroy(method[k]);
+	bench_maps_finish(&maps);
+	return result;
+}
+
+static int run_all(const struct scene *scene, int count, char **cells)
+{
+	const struct truth_spot spot = bench_spot();
+	char *usual[] = { "16", "32", "64" };
+	struct truth truth;
+	struct truth_error noise;
+	int result = truth_init(&truth, scene, &spot);
+
+	if (result != GR_OK)
+		return result;
+	truth_map(&truth, MAP, texels);
+	sample_count = truth_points(&truth, 1, 0.02f, samples, POINTS);
+	truth_trace(&truth, 7, PATHS, samples, sample_count);
+	noise = truth_compare(samples, found, sample_count);
+	printf("room of 4 m, two boxes, one spotlight; truth: %zu points, %d paths each, noise %.1f %%\n",
+	       sample_count, PATHS, 100 * noise.noise);
+	printf("lattice kernel   GPU ms/%d   CPU ms/%d   faster (GPU, CPU)  bias     nRMSE     shape\n",
+	       STEPS, STEPS);
+	if (!count) {
+		cells = usual;
+		count = 3;
+	}
+	for (int i = 0; i < count && result == GR_OK; i++)
+		result = bench(scene, atoi(cells[i]));
+	truth_finish(&truth);
+	return result;
+}
+
+int main(int argc, char **argv)
+{
+	const struct target_params params = { .kind = TARGET_HEADLESS, .width = 16, .height = 16, .gpu = -1 };
+	struct target *target;
+	struct scene *scene;
+	int result;
+
+	gr_log_init("bench-lattice", GR_LOG_WARNING);
+	result = target_create(&target, &params);
+	if (result != GR_OK)
+		return GR_EXIT_RUNTIME;
+	printf("%s\n", target_renderer_name(target));
+	scene = room_cornell();
+	result = run_all(scene, argc - 1, argv + 1);
+	if (result != GR_OK)
+		fprintf(stderr, "bench-lattice: %s\n", gr_result_name(result));
+	room_free(&scene);
+	target_destroy(&target);
+	return result == GR_OK ? GR_EXIT_OK : GR_EXIT_RUNTIME;
+}
