@@ -5,3 +5,4 @@ include $(top_srcdir)/docs/man/local.mk
 dist_doc_DATA += docs/protocol.md
 dist_doc_DATA += docs/control.md
 dist_doc_DATA += docs/models.md
+dist_doc_DATA += docs/light.md
