@@ -57,7 +57,7 @@ static bool refuses(const struct fdp_master *m, unsigned version, const struct f
 	if (version != FDP_VERSION || join->version != FDP_VERSION) {
 		snprintf(reason, FDP_REASON_MAX,
 			 "another protocol version: the node speaks %u, the master %u",
-			 (unsigned)(version != FDP_VERSION ? version : join->version), FDP_VERSION);
+			 (unsigned)(version != FDP_VERSION ? version : join->version), (unsigned)FDP_VERSION);
 		return true;
 	}
 	if (strcmp(join->name, m->names[join->index])) {

@@ -36,7 +36,7 @@ static __attribute__((constructor)) void fill_table(void)
 		const char *from = upper_table[i].name;
 		size_t n;
 
-		for (n = 0; from[n] && n < NAME_MAX_BYTES - 1; n++)
+		for (n = 0; n < NAME_MAX_BYTES - 1 && from[n]; n++)
 			table.names[i][n] = (char)(from[n] >= 'A' && from[n] <= 'Z' ? from[n] + 32 : from[n]);
 		table.info[i] = upper_table[i];
 		table.info[i].name = table.names[i];
