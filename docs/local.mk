@@ -6,3 +6,4 @@ dist_doc_DATA += docs/protocol.md
 dist_doc_DATA += docs/control.md
 dist_doc_DATA += docs/models.md
 dist_doc_DATA += docs/light.md
+dist_doc_DATA += docs/view.md
