@@ -161,6 +161,8 @@ int shadow_take(struct shadow_stage *stage, const struct render_frame *frame)
 			     memcmp(now->direction, last->direction, sizeof(vec3)) != 0;
 		bool other = moved || now->on != last->on ||
 			     (now->on && memcmp(now->intensity, last->intensity, sizeof(vec3)) != 0);
+		/* a lamp that moves while it is off changes nothing that is seen */
+		bool seen = stage->fresh || (other && (now->on || last->on));
 
 		if (other) {
 			usable(&stage->file->lamps[i], now, state);
@@ -168,9 +170,8 @@ int shadow_take(struct shadow_stage *stage, const struct render_frame *frame)
 			state->last = *now;
 		}
 		state->depth_old |= moved;
-		state->rsm_old |= other;
-		if (now->on || (other && stage->fresh) || (other && !now->on))
-			change |= other ? SHADOW_LIGHT : 0;
+		state->rsm_old |= seen;
+		change |= seen ? SHADOW_LIGHT : SHADOW_SAME;
 		if ((now->on && state->depth_old) || (stage->rsm && state->rsm_old))
 			change |= SHADOW_MAPS;
 	}
