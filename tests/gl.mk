@@ -48,3 +48,11 @@ tests_fuzz_fuzz_texture_SOURCES = tests/fuzz/fuzz_texture.c
 tests_fuzz_fuzz_texture_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(ASSIMP_CFLAGS)
 tests_fuzz_fuzz_texture_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
 tests_fuzz_fuzz_texture_LDADD = $(RENDERER_LIBS)
+
+# What the fuzzers of renderer/scene and renderer/image start from.
+EXTRA_DIST += \
+	tests/fuzz/corpus/exr/zip-float.exr \
+	tests/fuzz/corpus/glb/textured.glb \
+	tests/fuzz/corpus/texture/baseline.jpg \
+	tests/fuzz/corpus/texture/progressive.jpg \
+	tests/fuzz/corpus/texture/rgb.png
