@@ -351,6 +351,74 @@ static void derive_settling(struct links *links, const struct sectors *s)
 	links->settle_steps = (int)fmin(ceil(steps), 64.0 * longest);
 }
 
+/* Numbers the cells that light can pass between; a group's score is what its surfaces reflect. */
+static void group_cells(const struct links *links, const struct sectors *s, uint32_t *group,
+		       float *score, uint32_t *stack)
+{
+	const struct lattice *l = &links->lattice;
+	size_t cells = lattice_cells(l), depth = 0;
+	uint32_t groups = 0;
+
+	memset(group, 0xff, cells * sizeof *group);
+	for (size_t first = 0; first < cells; first++) {
+		if (group[first] != UINT32_MAX)
+			continue;
+		score[groups] = 0;
+		group[first] = groups;
+		stack[depth++] = (uint32_t)first;
+		while (depth > 0) {
+			size_t at = stack[--depth];
+			int x = (int)(at % (size_t)l->size[0]);
+			int y = (int)(at / (size_t)l->size[0] % (size_t)l->size[1]);
+			int z = (int)(at / (size_t)l->size[0] / (size_t)l->size[1]);
+			const struct link_surface *surface = NULL;
+
+			if (links->surface_of[at])
+				surface = &links->surfaces[links->surface_of[at] - 1];
+			for (uint32_t k = 0; surface && k < surface->count; k++) {
+				const struct link_block *block = &links->blocks[surface->first + k];
+
+				score[groups] += (float)s->a[sector_kind((int)block->j)] *
+					(block->reflect[0] + block->reflect[1] + block->reflect[2]);
+			}
+			for (int j = 0; j < SECTOR_COUNT; j++) {
+				int cx = x + sector_offset[j][0], cy = y + sector_offset[j][1];
+				int cz = z + sector_offset[j][2];
+				size_t to;
+
+				if (!lattice_inside(l, cx, cy, cz) || (surface && !surface->through[j]))
+					continue;
+				to = lattice_index(l, cx, cy, cz);
+				if (group[to] != UINT32_MAX)
+					continue;
+				group[to] = groups;
+				stack[depth++] = (uint32_t)to;
+			}
+		}
+		groups++;
+	}
+}
+
+static int create_fronts(struct build *b, const struct sectors *s)
+{
+	struct links *links = b->links;
+	size_t cells = lattice_cells(&links->lattice);
+	uint32_t *group = calloc(cells, sizeof *group), *stack = calloc(cells, sizeof *stack);
+	float *score = calloc(cells, sizeof *score);
+	int result = GR_ERR_NOMEM;
+
+	if (group && stack && score) {
+		group_cells(links, s, group, score, stack);
+		result = fronts_create(&links->fronts, b->scene, b->rays, &links->lattice,
+				       links->point, group, score);
+		links->rays += links->fronts.rays;
+	}
+	free(group);
+	free(stack);
+	free(score);
+	return result;
+}
+
 int links_create(struct links **out, const struct scene *scene, const struct rays *rays,
 		 const struct lattice *lattice, int rays_per_link, const float albedo_override[3])
 {
@@ -381,6 +449,9 @@ int links_create(struct links **out, const struct scene *scene, const struct ray
 		goto out;
 	sectors_init(&sectors);
 	derive_settling(links, &sectors);
+	result = create_fronts(&b, &sectors);
+	if (result != GR_OK)
+		goto out;
 	*out = links;
 	links = NULL;
 out:
@@ -397,6 +468,7 @@ void links_destroy(struct links **links)
 	free((*links)->surface_of);
 	free((*links)->surfaces);
 	free((*links)->blocks);
+	fronts_finish(&(*links)->fronts);
 	free(*links);
 	*links = NULL;
 }

@@ -18,6 +18,7 @@
 #ifndef GROTTO_RENDERER_GI_LINK_H
 #define GROTTO_RENDERER_GI_LINK_H
 
+#include "renderer/gi/front.h"
 #include "renderer/gi/lattice.h"
 #include "renderer/gi/sectors.h"
 #include "renderer/scene/scene.h"
@@ -49,6 +50,7 @@ struct links {
 	size_t surface_count;
 	struct link_block *blocks;
 	size_t block_count;
+	struct fronts fronts;
 	size_t rays; /* that were traced */
 	float point[3]; /* a cell's point, in cells from its lower corner */
 	/* Mean number of hops between two meetings with a surface and mean

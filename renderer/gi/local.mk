@@ -1,6 +1,7 @@
 # renderer/gi, renderer/trace
 RENDERER_SOURCES += \
 	renderer/gi/dispatch.c renderer/gi/dispatch.h \
+	renderer/gi/front.c renderer/gi/front.h \
 	renderer/gi/gi.h \
 	renderer/gi/lattice.c renderer/gi/lattice.h \
 	renderer/gi/link.c renderer/gi/link.h \
@@ -13,7 +14,7 @@ RENDERER_SOURCES += \
 
 SHADERS += \
 	renderer/shaders/gi_lpv.glsl renderer/shaders/gi_probe.comp renderer/shaders/gi_lpv_thesis.glsl renderer/shaders/lpv_check.comp \
-	renderer/shaders/lpv_lattice.glsl renderer/shaders/lpv_reflect.comp renderer/shaders/lpv_splat.glsl \
+	renderer/shaders/lpv_front.glsl renderer/shaders/lpv_lattice.glsl renderer/shaders/lpv_reflect.comp renderer/shaders/lpv_splat.glsl \
 	renderer/shaders/lpv_splat_peak.comp renderer/shaders/lpv_splat_resolve.comp \
 	renderer/shaders/lpv_splat_sum.comp renderer/shaders/lpv_step.comp \
 	renderer/shaders/lpv_thesis_start.comp renderer/shaders/lpv_thesis_step.comp \

@@ -56,17 +56,21 @@ static int upload_links(struct lpv *lpv, const struct links *links)
 	size_t count = links->surface_count + 1;
 	uint32_t *records = calloc(count * 8, sizeof *records);
 	uint32_t *cells = calloc(count, sizeof *cells);
+	uint32_t *of = calloc(lattice_cells(&links->lattice) * 2, sizeof *of);
 	struct link_block *blocks = calloc(links->block_count + 1, sizeof *blocks);
 	int result = GR_ERR_NOMEM;
 
-	if (!records || !cells || !blocks)
+	if (!records || !cells || !of || !blocks)
 		goto out;
 	/* record 0: all open, nothing stopped */
 	for (int w = 0; w < 7; w++)
 		records[w] = LINK_OPEN * UINT32_C(0x01010101);
-	for (size_t i = 0; i < lattice_cells(&links->lattice); i++)
+	for (size_t i = 0; i < lattice_cells(&links->lattice); i++) {
+		of[2 * i] = links->surface_of[i];
+		of[2 * i + 1] = links->fronts.of[i];
 		if (links->surface_of[i])
 			cells[links->surface_of[i] - 1] = (uint32_t)i;
+	}
 	for (size_t i = 0; i < links->surface_count; i++) {
 		const struct link_surface *s = &links->surfaces[i];
 
@@ -77,8 +81,9 @@ static int upload_links(struct lpv *lpv, const struct links *links)
 	lpv->surfaces = storage(GL_RGBA32UI, count * 8 * sizeof *records, records);
 	lpv->surface_cells = storage(GL_R32UI, count * sizeof *cells, cells);
 	lpv->surface_count = (int)links->surface_count;
-	lpv->surface_of = storage(GL_R32UI, lattice_cells(&links->lattice) * sizeof(uint32_t),
-				  links->surface_of);
+	lpv->surface_of = storage(GL_RG32UI, lattice_cells(&links->lattice) * 2 * sizeof *of, of);
+	lpv->fronts = storage(GL_R32UI, links->fronts.count * FRONT_MASKS * sizeof(uint32_t),
+			      links->fronts.masks);
 	/* the shader's record byte for byte, but for the direction, which it has unpacked */
 	for (size_t i = 0; i < links->block_count; i++) {
 		const signed char *o = sector_offset[links->blocks[i].j];
@@ -93,6 +98,7 @@ static int upload_links(struct lpv *lpv, const struct links *links)
 out:
 	free(records);
 	free(cells);
+	free(of);
 	free(blocks);
 	return result;
 }
@@ -130,6 +136,7 @@ static void bind(const struct gi_method *method)
 	glBindTextureUnit(LPV_UNIT_LIGHT, lpv->light[lpv->current].texture);
 	glBindTextureUnit(LPV_UNIT_SURFACE_OF, lpv->surface_of.texture);
 	glBindTextureUnit(LPV_UNIT_SURFACES, lpv->surfaces.texture);
+	glBindTextureUnit(LPV_UNIT_FRONTS, lpv->fronts.texture);
 }
 
 static void reflect(struct lpv *lpv)
@@ -292,6 +299,7 @@ static void destroy(struct gi_method *method)
 		storage_finish(&lpv->sent[i]);
 	}
 	storage_finish(&lpv->surface_of);
+	storage_finish(&lpv->fronts);
 	storage_finish(&lpv->surfaces);
 	storage_finish(&lpv->surface_cells);
 	storage_finish(&lpv->inject);

@@ -137,41 +137,92 @@ void lpv_cpu_step(struct lpv_cpu *lpv)
 	lpv->next = swap;
 }
 
-/* Whether the cell's point lies in front of the surface. */
-static bool in_front(const struct lpv_cpu *lpv, const int cell[3], const float position[3],
-		     const float normal[3])
+struct place {
+	int cell[3];   /* whose neighbourhood the mask is about */
+	uint32_t mask; /* cells that the surface sees, see struct fronts */
+	float at[3], n[3], out[3]; /* surface point in cells, normal, half a cell out */
+};
+
+static bool place_of(const struct lpv_cpu *lpv, const float position[3], const float normal[3],
+		     struct place *p)
+{
+	memset(p, 0, sizeof *p);
+	for (int i = 0; i < 3; i++) {
+		p->at[i] = (position[i] - lpv->lattice.origin[i]) / lpv->lattice.d;
+		p->n[i] = normal[i];
+		p->out[i] = p->at[i] + 0.5f * normal[i];
+	}
+	if (lpv->links)
+		p->mask = fronts_at(&lpv->links->fronts, &lpv->lattice, p->at, p->n, p->cell);
+	if (p->mask)
+		return true;
+	/* no surface of the scene: the cell half a cell out, and what it sees is not known */
+	for (int i = 0; i < 3; i++)
+		p->cell[i] = (int)floorf(p->out[i]);
+	p->mask = UINT32_MAX;
+	return lattice_inside(&lpv->lattice, p->cell[0], p->cell[1], p->cell[2]);
+}
+
+static bool counts(const struct lpv_cpu *lpv, const struct place *p, const int cell[3])
 {
 	static const float middle[3] = { 0.5f, 0.5f, 0.5f };
 	const float *point = lpv->links ? lpv->links->point : middle;
 	float side = 0;
+	int bit = 0;
 
-	for (int i = 0; i < 3; i++)
-		side += normal[i] * (lpv->lattice.origin[i] +
-				     ((float)cell[i] + point[i]) * lpv->lattice.d - position[i]);
-	return side > 0;
+	for (int i = 2; i >= 0; i--) {
+		int o = cell[i] - p->cell[i] + 1;
+
+		if (o < 0 || o > 2)
+			return false;
+		bit = 3 * bit + o;
+		side += p->n[i] * ((float)cell[i] + point[i] - p->at[i]);
+	}
+	return side > 0 && (p->mask >> bit & 1) &&
+	       lattice_inside(&lpv->lattice, cell[0], cell[1], cell[2]);
 }
 
-/* The cell that stands for the space in front of a surface point. */
-static bool front_cell(const struct lpv_cpu *lpv, const float position[3], const float normal[3],
-		       int cell[3])
+/* Square distance, in cells, of the k-th of the 27 cells around the place. */
+static float around(const struct place *p, int k, int cell[3])
 {
-	for (int step = 1; step <= 2; step++) {
-		for (int i = 0; i < 3; i++)
-			cell[i] = (int)floorf((position[i] - lpv->lattice.origin[i]) / lpv->lattice.d +
-					      0.5f * (float)step * normal[i]);
-		if (lattice_inside(&lpv->lattice, cell[0], cell[1], cell[2]) &&
-		    in_front(lpv, cell, position, normal))
-			return true;
+	const int o[3] = { k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1 };
+	float d = 0;
+
+	for (int i = 0; i < 3; i++) {
+		cell[i] = p->cell[i] + o[i];
+		d += ((float)cell[i] + 0.5f - p->out[i]) * ((float)cell[i] + 0.5f - p->out[i]);
 	}
-	return false;
+	return d;
+}
+
+/* The cell that takes the light of a surface point. */
+static bool front_cell(const struct lpv_cpu *lpv, const struct place *p, int cell[3])
+{
+	float nearest = INFINITY;
+
+	for (int i = 0; i < 3; i++)
+		cell[i] = (int)floorf(p->out[i]);
+	if (counts(lpv, p, cell))
+		return true;
+	for (int k = 0; k < 27; k++) {
+		int c[3];
+		float d = around(p, k, c);
+
+		if (d < nearest && counts(lpv, p, c)) {
+			nearest = d;
+			memcpy(cell, c, sizeof c);
+		}
+	}
+	return nearest < INFINITY;
 }
 
 bool lpv_cpu_inject(struct lpv_cpu *lpv, const float position[3], const float normal[3],
 		    const float flux[3])
 {
+	struct place place;
 	int cell[3];
 
-	if (!front_cell(lpv, position, normal, cell))
+	if (!place_of(lpv, position, normal, &place) || !front_cell(lpv, &place, cell))
 		return false;
 	for (int c = 0; c < 3; c++)
 		add_lobe(lpv->inject +
@@ -181,54 +232,51 @@ bool lpv_cpu_inject(struct lpv_cpu *lpv, const float position[3], const float no
 	return true;
 }
 
-static int direction_index(int x, int y, int z)
+static void add_cell(const struct lpv_cpu *lpv, const int cell[3], float w,
+		     float sum[LPV_CELL_FLOATS], float *weights)
 {
-	int n = (x + 1) + 3 * (y + 1) + 9 * (z + 1);
+	const float *from = lpv->light + lattice_index(&lpv->lattice, cell[0], cell[1], cell[2]) *
+						 LPV_CELL_FLOATS;
 
-	return n > 13 ? n - 1 : n;
+	for (int i = 0; i < LPV_CELL_FLOATS; i++)
+		sum[i] += w * from[i];
+	*weights += w;
 }
 
 void lpv_cpu_irradiance(const struct lpv_cpu *lpv, const float position[3],
 			const float normal[3], float out[3])
 {
-	const struct lattice *l = &lpv->lattice;
-	const struct link_surface *surface = NULL;
-	int base[3], low[3];
-	float t[3], sum[LPV_CELL_FLOATS] = { 0 }, weights = 0;
+	const float few = 0.1f, d = lpv->lattice.d;
+	float sum[LPV_CELL_FLOATS] = { 0 }, weights = 0;
+	struct place place;
 
 	memset(out, 0, 3 * sizeof *out);
-	if (!front_cell(lpv, position, normal, base))
+	if (!place_of(lpv, position, normal, &place))
 		return;
-	size_t base_index = lattice_index(l, base[0], base[1], base[2]);
-	if (lpv->links && lpv->links->surface_of[base_index])
-		surface = &lpv->links->surfaces[lpv->links->surface_of[base_index] - 1];
-	for (int i = 0; i < 3; i++) {
-		/* half a cell out, within the base cell */
-		float at = (position[i] - l->origin[i]) / l->d + 0.5f * normal[i];
-
-		at = fminf(fmaxf(at, (float)base[i]), (float)base[i] + 1.0f) - 0.5f;
-		low[i] = (int)floorf(at);
-		t[i] = at - (float)low[i];
-	}
 	for (int k = 0; k < 8; k++) {
-		int o[3] = { k & 1, (k >> 1) & 1, k >> 2 };
-		int cell[3] = { low[0] + o[0], low[1] + o[1], low[2] + o[2] };
-		int step[3] = { cell[0] - base[0], cell[1] - base[1], cell[2] - base[2] };
-		bool self = !step[0] && !step[1] && !step[2];
+		const int o[3] = { k & 1, (k >> 1) & 1, k >> 2 };
+		int cell[3];
 		float w = 1;
 
-		if (!lattice_inside(l, cell[0], cell[1], cell[2]))
-			continue;
-		for (int i = 0; i < 3; i++)
-			w *= o[i] ? t[i] : 1 - t[i];
-		if (!self && surface)
-			w *= (float)surface->through[direction_index(step[0], step[1], step[2])] / (float)LINK_OPEN;
-		if (!self && !in_front(lpv, cell, position, normal))
-			w = 0;
-		weights += w;
-		for (int i = 0; i < LPV_CELL_FLOATS; i++)
-			sum[i] += w * lpv->light[lattice_index(l, cell[0], cell[1], cell[2]) *
-							 LPV_CELL_FLOATS + (size_t)i];
+		for (int i = 0; i < 3; i++) {
+			float low = floorf(place.out[i] - 0.5f), t = place.out[i] - 0.5f - low;
+
+			cell[i] = (int)low + o[i];
+			w *= o[i] ? t : 1 - t;
+		}
+		if (counts(lpv, &place, cell))
+			add_cell(lpv, cell, w, sum, &weights);
+	}
+	if (weights < few) {
+		float share = few - weights;
+
+		for (int k = 0; k < 27; k++) {
+			int cell[3];
+			float away = around(&place, k, cell) + 0.1f;
+
+			if (counts(lpv, &place, cell))
+				add_cell(lpv, cell, share / (away * away), sum, &weights);
+		}
 	}
 	if (!(weights > 0))
 		return;
@@ -236,7 +284,7 @@ void lpv_cpu_irradiance(const struct lpv_cpu *lpv, const float position[3],
 		const float *fv = sum + 4 * c;
 		float along = fv[1] * normal[0] + fv[2] * normal[1] + fv[3] * normal[2];
 
-		out[c] = lpv->calibration / (l->d * l->d * weights) *
+		out[c] = lpv->calibration / (d * d * weights) *
 			 ((float)lpv->sectors.look_f * 0.25f * fv[0] -
 			  (float)lpv->sectors.look_v * 0.5f * along);
 	}

@@ -21,11 +21,12 @@ enum lpv_binding {
 	LPV_BINDING_NEW_LIGHT = 15,
 };
 
-/* Texture units; 8 to 10 stay bound for shading. */
+/* Texture units; 8 to 11 are bound for shading and for the lamps' maps. */
 enum lpv_unit {
 	LPV_UNIT_LIGHT = 8,
 	LPV_UNIT_SURFACE_OF = 9,
 	LPV_UNIT_SURFACES = 10,
+	LPV_UNIT_FRONTS = 11,
 	LPV_UNIT_SENT = 11,
 	LPV_UNIT_BEFORE = 11, /* lpv_check */
 	LPV_UNIT_START_INJECT = 11, /* lpv_thesis_start */
@@ -80,7 +81,7 @@ struct lpv {
 
 	unsigned step, last_step, reflect, splat_peak, splat_sum, splat_resolve, check; /* programs */
 	unsigned block, splat, checks;
-	struct lpv_buffer surface_of, surfaces, surface_cells, inject, emitted, blocks;
+	struct lpv_buffer surface_of, fronts, surfaces, surface_cells, inject, emitted, blocks;
 	struct lpv_buffer light[2]; /* after the last step of a frame; light[current] is the newest */
 	int current;
 	struct lpv_buffer sent[2]; /* with a border of one dark cell, scaled by the clamp */

@@ -1,5 +1,5 @@
 // The lattice, for propagation and for shading: struct lattice_block in
-// renderer/gi/lpv_gl.h, struct links in renderer/gi/link.h, and the light.
+// renderer/gi/lpv_private.h, struct links in renderer/gi/link.h, and the light.
 layout(std140, binding = 8) uniform LatticeBlock {
 	ivec4 size;       // cells along x, y, z; w: all
 	vec4 origin;      // lower corner, scene, metres; w: side of a cell
@@ -14,7 +14,8 @@ layout(std140, binding = 8) uniform LatticeBlock {
 // where a storage buffer takes four loads (on llvmpipe four times the time).
 // F, V [W] per cell: all of red, all of green, all of blue.
 layout(binding = 8) uniform samplerBuffer light;
-// Per cell its surface record; record 0 is that of cells with all links open.
+// Per cell: x its surface record, record 0 is that of cells with all links open;
+// y its record among the masks of lpv_front.glsl, plus 1.
 layout(binding = 9) uniform usamplerBuffer surface_of;
 // Two uvec4: 26 bytes of transmittance in 1/128; the last word: first block, their number from
 // bit 27 on.
@@ -31,25 +32,4 @@ bool lattice_inside(ivec3 cell)
 int lattice_index(ivec3 cell)
 {
 	return cell.x + lattice.size.x * (cell.y + lattice.size.y * cell.z);
-}
-
-// Whether the cell's point lies in front of a surface.
-bool lattice_in_front(ivec3 cell, vec3 position, vec3 normal)
-{
-	vec3 point = lattice.origin.xyz + (vec3(cell) + lattice.point.xyz) * lattice.origin.w;
-
-	return dot(normal, point - position) > 0.0;
-}
-
-// The cell that stands for the space in front of a surface point: half a cell
-// out, or a whole one where that cell's point still lies behind. False outside.
-bool lattice_front_cell(vec3 position, vec3 normal, out ivec3 cell)
-{
-	vec3 at = (position - lattice.origin.xyz) / lattice.origin.w;
-
-	cell = ivec3(floor(at + 0.5 * normal));
-	if (lattice_inside(cell) && lattice_in_front(cell, position, normal))
-		return true;
-	cell = ivec3(floor(at + normal));
-	return lattice_inside(cell) && lattice_in_front(cell, position, normal);
 }

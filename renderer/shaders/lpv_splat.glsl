@@ -4,7 +4,7 @@
 //
 // The unit of the fixed point follows the brightest texel: a run of 16 texels
 // stays under 2^38 units, 2^25 runs fit before the sign bit.
-#include "lpv_lattice.glsl"
+#include "lpv_front.glsl"
 
 layout(binding = 13) uniform sampler2DArray position_area_map;
 layout(binding = 14) uniform sampler2DArray normal_map;

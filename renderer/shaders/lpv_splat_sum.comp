@@ -57,7 +57,8 @@ void main()
 		if (!finite3(flux) || !finite3(p.xyz) || !finite3(normal) || all(equal(flux, vec3(0.0))))
 			continue;
 		normal = normalize(normal);
-		if (!lattice_front_cell(p.xyz, normal, cell))
+		Front front;
+		if (!front_of(p.xyz, normal, front) || !front_cell(front, cell))
 			continue;
 		int index = lattice_index(cell);
 		if (index != current) {
