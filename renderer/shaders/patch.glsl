@@ -1,4 +1,6 @@
 // Emissive surfaces as rectangles (struct patch_record in renderer/view/blocks.h).
+#define PATCHES_MOST 16
+
 struct Patch {
 	vec4 centre;   // scene, metres; w: half the longer side
 	vec4 u;        // half side, metres; w: 1/|u|
@@ -12,8 +14,28 @@ struct Patch {
 layout(std140, binding = 5) uniform Patches {
 	ivec4 patch_count; // x
 	vec4 patch_map;    // of the hemicubes, x: half width at distance 1, y: pixels, z: near, metres
-	Patch patches[16];
+	Patch patches[PATCHES_MOST];
 };
+
+// Whether anything of a patch is above the horizon of (p, n), seen from its front.
+bool patch_shines(Patch patch_, vec3 p, vec3 n)
+{
+	vec3 to = patch_.centre.xyz - p;
+	float reach = abs(dot(n, patch_.u.xyz)) + abs(dot(n, patch_.v.xyz));
+
+	return dot(to, patch_.normal.xyz) < 0.0 && dot(n, to) + reach > 0.0;
+}
+
+// One bit for each patch that shines on (p, n). The loop's length is fixed so that
+// it is unrolled, and software then reads each patch once and not once a pixel.
+uint patches_that_shine(vec3 p, vec3 n)
+{
+	uint bits = 0u;
+
+	for (int i = 0; i < PATCHES_MOST; i++)
+		bits |= i < patch_count.x && patch_shines(patches[i], p, n) ? 1u << i : 0u;
+	return bits;
+}
 
 // Integral of an edge of a spherical polygon, z part: angle times unit normal.
 // theta / (2 pi sin(theta)) is the fit of Heitz, Dupuy, Hill and Neubelt (2016),

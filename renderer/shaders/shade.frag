@@ -80,8 +80,8 @@ vec3 from_patches(Point p)
 	vec3 sum = vec3(0.0);
 	mat3 frame_n = patch_frame(p.normal);
 
-	for (int i = 0; i < patch_count.x; i++) {
-		Patch patch_ = patches[i];
+	for (uint left = patches_that_shine(p.position, p.normal); left != 0u; left &= left - 1u) {
+		Patch patch_ = patches[findLSB(left)];
 		float f = patch_form_factor(patch_, p.position, frame_n);
 		vec3 to_patch = patch_.centre.xyz - p.position;
 		float metres = length(to_patch);
