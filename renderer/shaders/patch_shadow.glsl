@@ -16,10 +16,9 @@ vec3 patch_face_axes(vec3 local, int face)
 	return face == 4 ? vec3(-local.x, local.z, -local.y) : r;
 }
 
-// 0 dark .. 1 lit; where the patch does not shine (reaches false) nothing is
-// looked up. As shadow_point, but in the patch's own axes, so that nothing
+// 0 dark .. 1 lit; of no use where the patch does not shine. As shadow_point, but in the patch's own axes, so that nothing
 // has to be read for each face.
-float patch_visibility(Patch patch_, vec3 p, vec3 n, bool reaches)
+float patch_visibility(Patch patch_, vec3 p, vec3 n)
 {
 	const mat2 golden = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688);
 	float half_ = patch_map.x, pixels = patch_map.y, near = patch_map.z;
@@ -43,11 +42,11 @@ float patch_visibility(Patch patch_, vec3 p, vec3 n, bool reaches)
 	vec2 slope = normal.xy * (2.0 * half_ * by_distance / pixels / min(c + lift, -1e-5 * metres));
 	// as wide as the patch would blur a blocker two thirds of the way down
 	float radius = clamp(patch_.centre.w * 0.25 / (at.z * half_) * pixels, 0.7, 8.0);
-	int taps = reaches && at.z > near ? PATCH_TAPS : 0;
 	vec2 direction = vec2(1.0, 0.0);
-	float lit = taps > 0 ? 0.0 : 1.0;
+	float lit = 0.0;
 
-	for (int i = 0; i < taps; i++) {
+	// of a fixed length, so that it is unrolled
+	for (int i = 0; i < PATCH_TAPS; i++) {
 		vec2 tap = direction * (radius * sqrt((float(i) + 0.5) / float(PATCH_TAPS)));
 		vec2 texel = clamp(floor(centre + tap), vec2(0.0), vec2(pixels - 1.0));
 		float stored = texelFetch(patch_depth, ivec3(texel, patch_.maps.x + face), 0).r;
@@ -55,5 +54,5 @@ float patch_visibility(Patch patch_, vec3 p, vec3 n, bool reaches)
 		lit += stored > depth + dot(slope, texel + 0.5 - centre) ? 0.0 : 1.0 / float(PATCH_TAPS);
 		direction = golden * direction;
 	}
-	return lit;
+	return at.z > near ? lit : 1.0;
 }

@@ -87,7 +87,7 @@ vec3 from_patches(Point p)
 		float metres = length(to_patch);
 
 		to_patch /= metres;
-		float visible = patch_visibility(patch_, p.position, p.normal, f > 0.0);
+		float visible = patch_visibility(patch_, p.position, p.normal);
 
 		sum += f > 0.0 ? reflectance(p, to_patch) * patch_.radiance.rgb *
 					 (PI * f * medium_to_surface(metres) * visible)
