@@ -15,6 +15,13 @@ tests_accuracy_test_lpv_gl_SOURCES = tests/accuracy/test_lpv_gl.c tests/unit/uni
 tests_accuracy_test_lpv_gl_CFLAGS = $(TEST_CFLAGS) $(EPOXY_CFLAGS)
 tests_accuracy_test_lpv_gl_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS)
 
+check_PROGRAMS += tests/accuracy/test_holes
+TESTS += tests/accuracy/test_holes
+tests_accuracy_test_holes_SOURCES = tests/accuracy/test_holes.c tests/unit/unit.h \
+	tests/unit/shared.h
+tests_accuracy_test_holes_CFLAGS = $(TEST_CFLAGS) $(EPOXY_CFLAGS) $(OPENEXR_CFLAGS)
+tests_accuracy_test_holes_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm
+
 # Cost and error of the lattice; takes a minute, so not a test.
 noinst_PROGRAMS += tools/bench-lattice
 tools_bench_lattice_SOURCES = tools/bench_lattice.c $(GI_GL_TEST_SOURCES)
