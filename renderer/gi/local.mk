@@ -5,7 +5,7 @@ RENDERER_SOURCES += \
 	renderer/gi/gi.h \
 	renderer/gi/lattice.c renderer/gi/lattice.h \
 	renderer/gi/link.c renderer/gi/link.h \
-	renderer/gi/lpv.c renderer/gi/lpv_check.c renderer/gi/lpv_private.h renderer/gi/lpv_splat.c \
+	renderer/gi/lpv.c renderer/gi/lpv_check.c renderer/gi/lpv_private.h renderer/gi/lpv_splat.c renderer/gi/lpv_start.c \
 	renderer/gi/lpv_cpu.c renderer/gi/lpv_cpu.h renderer/gi/lpv_thesis.c \
 	renderer/gi/sectors.c renderer/gi/sectors.h \
 	renderer/gi/surface.c renderer/gi/surface.h \
@@ -14,7 +14,7 @@ RENDERER_SOURCES += \
 
 SHADERS += \
 	renderer/shaders/gi_lpv.glsl renderer/shaders/gi_probe.comp renderer/shaders/gi_lpv_thesis.glsl renderer/shaders/lpv_check.comp \
-	renderer/shaders/lpv_front.glsl renderer/shaders/lpv_lattice.glsl renderer/shaders/lpv_reflect.comp renderer/shaders/lpv_splat.glsl \
+	renderer/shaders/lpv_front.glsl renderer/shaders/lpv_leap.comp renderer/shaders/lpv_lattice.glsl renderer/shaders/lpv_reflect.comp renderer/shaders/lpv_splat.glsl \
 	renderer/shaders/lpv_splat_peak.comp renderer/shaders/lpv_splat_resolve.comp \
 	renderer/shaders/lpv_splat_sum.comp renderer/shaders/lpv_step.comp \
 	renderer/shaders/lpv_thesis_start.comp renderer/shaders/lpv_thesis_step.comp \

@@ -236,16 +236,22 @@ static int update(struct gi_method *method, const struct render_frame *frame,
 	if (lpv->is_thesis) {
 		thesis_frame(lpv, frame, restart, steps);
 	} else {
-		if (restart)
-			steps = lpv->settle_steps;
 		/* the check compares two lights: the last two steps', or two frames' */
-		lpv_propagate(lpv, steps, restart ? 2 : 1);
+		if (restart)
+			lpv_start(lpv);
+		else
+			lpv_propagate(lpv, steps, 1);
 	}
 	lpv_check_submit(lpv);
 	lpv->started = true;
 	lpv->epoch = frame->gi_epoch;
 	lpv->rsm_version = rsm->version;
-	lpv->steps_since_change += steps;
+	if (restart && !lpv->is_thesis) {
+		lpv->steps_since_change = lpv->settle_steps;
+		steps = lpv_start_steps(lpv);
+	} else {
+		lpv->steps_since_change += steps;
+	}
 	lpv->stats.ran = true;
 	lpv->stats.steps = steps;
 	lpv->stats.steady = lpv->steps_since_change >= lpv->settle_steps;
@@ -290,6 +296,7 @@ static void destroy(struct gi_method *method)
 		lpv_thesis_finish(&lpv->thesis);
 	lpv_splat_finish(lpv);
 	lpv_check_finish(lpv);
+	lpv_start_finish(lpv);
 	program_destroy(&lpv->step);
 	program_destroy(&lpv->last_step);
 	program_destroy(&lpv->reflect);
@@ -364,6 +371,8 @@ static int create_gl(struct lpv *lpv, const struct links *links)
 		result = lpv_splat_init(lpv);
 	if (result == GR_OK)
 		result = lpv_check_init(lpv);
+	if (result == GR_OK)
+		result = lpv_start_init(lpv);
 	if (result != GR_OK)
 		return result;
 	for (int i = 0; i < 2; i++) {
@@ -385,10 +394,11 @@ static void say(struct lpv *lpv, const struct links *links, const struct scene_f
 
 	snprintf(lpv->description, sizeof lpv->description,
 		 "light propagation volumes%s, %d x %d x %d cells of %.3g m, %d steps a frame: diffuse "
-		 "light between surfaces; %zu cells meet surfaces (%zu rays, once), steady after %d steps",
+		 "light between surfaces; %zu cells meet surfaces (%zu rays, once), steady after %d steps, from darkness "
+		 "after %d",
 		 lpv->is_thesis ? " (thesis scheme)" : "", size[0], size[1], size[2],
 		 (double)lpv->lattice.d, file->gi.steps,
-		 links->surface_count, links->rays, lpv->settle_steps);
+		 links->surface_count, links->rays, lpv->settle_steps, lpv_start_steps(lpv));
 }
 
 int gi_lpv_create(struct gi_method **out, const struct scene *scene,

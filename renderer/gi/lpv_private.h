@@ -14,6 +14,7 @@
 enum lpv_binding {
 	LPV_BINDING_BLOCK = 8, /* uniform */
 	LPV_BINDING_INJECT = 11, /* written */
+	LPV_BINDING_LEAP = 11, /* lpv_leap: four */
 	LPV_BINDING_EMITTED = 12,
 	LPV_BINDING_NEXT = 13,
 	LPV_BINDING_SPLAT = 14,
@@ -68,6 +69,12 @@ struct lpv_thesis {
 	float energy; /* of the last frame's lamps (section 3.4) */
 };
 
+/* From darkness to the steady state (lpv_start.c). */
+struct lpv_start {
+	unsigned programs[3], oldest, sums;
+	struct dispatch all;
+};
+
 struct lpv {
 	struct gi_method base;
 	bool is_thesis;
@@ -77,7 +84,7 @@ struct lpv {
 	float point[3]; /* see struct links */
 	float calibration;
 	int settle_steps;
-	char description[256];
+	char description[320];
 
 	unsigned step, last_step, reflect, splat_peak, splat_sum, splat_resolve, check; /* programs */
 	unsigned block, splat, checks;
@@ -86,6 +93,7 @@ struct lpv {
 	int current;
 	struct lpv_buffer sent[2]; /* with a border of one dark cell, scaled by the clamp */
 	int sending;      /* sent[sending] is the newest */
+	struct lpv_start start;
 	struct dispatch per_cell, per_surface;
 	int surface_count;
 
@@ -105,6 +113,16 @@ struct lpv {
 
 /* Steps from the newest light; the last `looks` (1 or 2) of them can be looked at. */
 void lpv_propagate(struct lpv *lpv, int steps, int looks);
+
+/*
+ * lpv_start.c: from darkness to the steady state in lpv_start_steps steps, half
+ * of settle_steps: between thirds of them it leaps ahead. What is left is under
+ * 1e-4 of the largest (tests/accuracy/test_lpv_gl).
+ */
+int lpv_start_init(struct lpv *lpv);
+void lpv_start_finish(struct lpv *lpv);
+int lpv_start_steps(const struct lpv *lpv);
+void lpv_start(struct lpv *lpv);
 
 /* lpv_thesis.c */
 int lpv_thesis_init(struct lpv_thesis *thesis, const struct lattice *lattice,

@@ -296,6 +296,60 @@ static void same_bits(void **state)
 	end(&b);
 }
 
+/* The quick start against very many plain steps; all cells, both bands of directions. */
+static void quick_start(void **state)
+{
+	const size_t count = (size_t)16 * 16 * 16 * LPV_LIGHT_FLOATS;
+	float *quick = calloc(count, sizeof *quick), *plain = calloc(count, sizeof *plain);
+	double worst = 0, largest = 0;
+	struct setup s;
+	struct lpv *lpv;
+	int steps;
+
+	(void)state;
+	assert_true(quick && plain);
+	begin(&s, 16, 1);
+	bench_maps_fill(&s.maps, 0, texels, 1);
+	frame(&s);
+	steps = stats_now(&s).steps;
+	lpv = (struct lpv *)s.method;
+	glGetNamedBufferSubData(lpv->light[lpv->current].buffer, 0,
+				(GLsizeiptr)(count * sizeof *quick), quick);
+	s.method->ops->bind(s.method);
+	lpv_propagate(lpv, 3 * lpv->settle_steps, 1);
+	glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+	glGetNamedBufferSubData(lpv->light[lpv->current].buffer, 0,
+				(GLsizeiptr)(count * sizeof *plain), plain);
+	for (size_t k = 0; k < count; k++) {
+		worst = fmax(worst, fabs((double)(quick[k] - plain[k])));
+		largest = fmax(largest, fabs((double)plain[k]));
+	}
+	printf("# steady after %d steps from darkness (%d after a change): %.1e off\n", steps,
+	       lpv->settle_steps, worst / largest);
+	assert_true(worst < 1e-4 * largest);
+	free(quick);
+	free(plain);
+	end(&s);
+}
+
+/* A lamp that changes in every frame: gi_steps steps each, no more. */
+static void never_at_rest(void **state)
+{
+	struct setup s;
+
+	(void)state;
+	begin(&s, 12, 1);
+	bench_maps_fill(&s.maps, 0, texels, 1);
+	frame(&s);
+	for (int i = 0; i < 5; i++) {
+		bench_maps_fill(&s.maps, 0, texels, 1 + 0.1f * (float)i);
+		frame(&s);
+		assert_true(stats_now(&s).ran);
+		assert_int_equal(stats_now(&s).steps, s.frame.gi_steps);
+	}
+	end(&s);
+}
+
 static void comes_to_rest(void **state)
 {
 	struct setup s;
@@ -385,6 +439,7 @@ int main(void)
 		cmocka_unit_test(lamp_switches),    cmocka_unit_test(huge_intensity),
 		cmocka_unit_test(nan_is_reported),  cmocka_unit_test(two_lamps),
 		cmocka_unit_test(same_bits),	    cmocka_unit_test(comes_to_rest),
+		cmocka_unit_test(quick_start),	    cmocka_unit_test(never_at_rest),
 		cmocka_unit_test(thesis_mode),
 	};
 	int failed;
