@@ -44,7 +44,11 @@ static void send_datagram(void *ctx, int to, const uint8_t *bytes, size_t len)
 {
 	struct master *m = ctx;
 
-	net_send(m->net, to, bytes, len);
+	/* An answer goes back where the question came from, which teaches nothing yet. */
+	if (m->from && to >= 0 && to == fdp_master_answers(m->fdp))
+		net_send_to(m->net, m->from, bytes, len);
+	else
+		net_send(m->net, to, bytes, len);
 }
 
 static void node_gone(struct master *m, int node)
@@ -274,13 +278,19 @@ static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	struct master *m = ctx;
 	int64_t now_ns = gr_clock_now(&gr_clock_monotonic);
 	struct fdp_peer_status peer;
-	int node = fdp_master_receive(m->fdp, bytes, len, now_ns);
+	bool fresh;
+	int node;
 
+	m->from = from;
+	node = fdp_master_receive(m->fdp, bytes, len, now_ns, &fresh);
+	m->from = NULL;
 	if (node < 0) {
 		bad_datagram(m, node, from, now_ns);
 		return;
 	}
-	net_learn(m->net, node, from);
+	/* Whoever sends a recording again must not have what is for the node. */
+	if (fresh)
+		net_learn(m->net, node, from);
 	fdp_master_peer(m->fdp, (size_t)node, &peer);
 	frame_stats_applied(&m->stats, (unsigned)node, peer.acked, now_ns);
 	if (peer.swapped_frame != 0)

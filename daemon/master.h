@@ -38,6 +38,7 @@ struct master {
 	struct master_params params;
 	struct loop *loop;
 	struct net *net;
+	const struct net_address *from; /* of the datagram that is being handled, or NULL */
 	struct trackers *trackers;
 	struct fdp_master *fdp;
 	struct param_state *state;

@@ -347,13 +347,25 @@ static void queue(struct net *net, const struct net_address *to, const uint8_t *
 	net->out[i].msg_hdr.msg_namelen = to->len;
 }
 
+static bool too_long(struct net *net, size_t len)
+{
+	if (len <= net->datagram_max)
+		return false;
+	net->stats.send_failed++;
+	net->stats.send_errno = EMSGSIZE;
+	return true;
+}
+
+void net_send_to(struct net *net, const struct net_address *to, const uint8_t *bytes, size_t len)
+{
+	if (!too_long(net, len))
+		queue(net, to, bytes, len);
+}
+
 void net_send(struct net *net, int to, const uint8_t *bytes, size_t len)
 {
-	if (len > net->datagram_max) {
-		net->stats.send_failed++;
-		net->stats.send_errno = EMSGSIZE;
+	if (too_long(net, len))
 		return;
-	}
 	if (to >= 0 && (size_t)to < net->peer_count) {
 		queue(net, &net->peers[to], bytes, len);
 	} else if (to < 0 && net->has_group) {

@@ -60,7 +60,9 @@ void net_stats(const struct net *net, struct net_stats *out);
  */
 void net_send(struct net *net, int to, const uint8_t *bytes, size_t len);
 void net_flush(struct net *net);
-/* Master: node `node` was heard, authentically, from there. */
+/* Master: queues an answer to where a datagram came from. */
+void net_send_to(struct net *net, const struct net_address *to, const uint8_t *bytes, size_t len);
+/* Master: node `node` was heard from there, and it was no recording. */
 void net_learn(struct net *net, int node, const struct net_address *from);
 
 typedef void (*net_receive_fn)(void *ctx, const uint8_t *bytes, size_t len,

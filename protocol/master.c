@@ -86,6 +86,7 @@ int fdp_master_create(struct fdp_master **out, const struct fdp_master_params *p
 	if (!m->params.probe_ns)
 		m->params.probe_ns = default_probe(params->deadline_ns);
 	m->ops = *ops;
+	m->answers = -1;
 	m->gate = (struct fdp_gate){
 		.key = m->params.key,
 		.session = params->session,

@@ -69,7 +69,8 @@ struct fdp_master_ops {
 	 * Neither may call back into the master.
 	 * One datagram to node `to`, or to all nodes for FDP_TO_ALL. Where the
 	 * node's address is not the layout's, the caller has the last source
-	 * address it heard an authenticated datagram from.
+	 * address it heard a fresh datagram from (fdp_master_receive). What is sent
+	 * to node fdp_master_answers() goes to where the datagram came from.
 	 */
 	void (*send)(void *ctx, int to, const uint8_t *bytes, size_t len);
 	void (*event)(void *ctx, const struct fdp_master_event *event);
@@ -112,10 +113,17 @@ int fdp_master_begin(struct fdp_master *master, const struct param_state *state,
 		     int64_t now_ns);
 /*
  * A datagram that arrived. Returns the node it is authentically from (>= 0),
- * or a negative result; everything bad is counted and dropped. What is sent to
- * that node during the call answers it: to the address that it came from.
+ * or a negative result; everything bad is counted and dropped.
+ *
+ * *out_fresh (may be NULL): it is no recording, for it passed the window of its
+ * session or echoed a challenge; only then does its source address say where
+ * the node is. The first JOIN of a node, which anybody may have recorded, is
+ * answered and not fresh.
  */
-int fdp_master_receive(struct fdp_master *master, const uint8_t *bytes, size_t len, int64_t now_ns);
+int fdp_master_receive(struct fdp_master *master, const uint8_t *bytes, size_t len, int64_t now_ns,
+		       bool *out_fresh);
+/* In ops.send: the node whose datagram is answered; -1 outside of fdp_master_receive. */
+int fdp_master_answers(const struct fdp_master *master);
 /* Does what time asks for: probes, deadline, evictions. */
 void fdp_master_tick(struct fdp_master *master, int64_t now_ns);
 /* When tick wants to be called next; INT64_MAX when nothing is pending. */

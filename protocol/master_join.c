@@ -154,7 +154,7 @@ static void admit(struct fdp_master *m, unsigned node, const struct fdp_header *
 	fdp_master_send_snapshot(m, node, now_ns);
 }
 
-void fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
+bool fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
 			const struct fdp_join *join, int64_t now_ns)
 {
 	const unsigned node = header->sender;
@@ -164,27 +164,29 @@ void fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
 
 	if (refuses(m, header->version, join, reason)) {
 		refuse(m, node, join, reason, now_ns);
-		return;
+		return false;
 	}
 	if (!header->session) {
 		welcome(m, node, join);
-		return;
+		return false;
 	}
 	/* Our snapshot was lost, or its acknowledgement. */
 	if (peer->state == FDP_PEER_JOINING &&
 	    !sodium_memcmp(join->challenge, peer->challenge, sizeof expected)) {
-		if (fdp_replay_take(&peer->window, header->sequence)) {
-			peer->status.last_heard_ns = now_ns;
-			if (now_ns - peer->snapshot_ns >= m->params.probe_ns)
-				fdp_master_send_snapshot(m, node, now_ns);
-		}
-		return;
+		if (!fdp_replay_take(&peer->window, header->sequence))
+			return false;
+		peer->status.last_heard_ns = now_ns;
+		if (now_ns - peer->snapshot_ns >= m->params.probe_ns)
+			fdp_master_send_snapshot(m, node, now_ns);
+		return true;
 	}
 	make_challenge(m, node, join->nonce, expected);
-	if (!sodium_memcmp(join->challenge, expected, sizeof expected))
-		admit(m, node, header, join, now_ns);
-	else
+	if (sodium_memcmp(join->challenge, expected, sizeof expected)) {
 		m->counters.bad_replay++;
+		return false;
+	}
+	admit(m, node, header, join, now_ns);
+	return true;
 }
 
 void fdp_master_on_leave(struct fdp_master *m, unsigned node, int64_t now_ns)

@@ -51,6 +51,7 @@ struct fdp_master {
 	struct fdp_gate gate;
 	struct fdp_outbox out;
 	struct fdp_peer peers[FDP_MAX_NODES];
+	int answers; /* node whose datagram is being handled, or -1 */
 
 	struct param_state *state;
 	uint64_t frame, previous_frame, hash, previous_hash;
@@ -81,7 +82,8 @@ void fdp_master_finish_if_over(struct fdp_master *m, int64_t now_ns);
 void fdp_master_write_state(struct fdp_master *m, struct fdp_letter *letter, enum fdp_kind kind,
 			    uint64_t base);
 
-void fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
+/* True when the JOIN is no recording. */
+bool fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
 			const struct fdp_join *join, int64_t now_ns);
 void fdp_master_on_leave(struct fdp_master *m, unsigned node, int64_t now_ns);
 

@@ -138,7 +138,7 @@ static void tell_stranger(struct fdp_master *m, unsigned node, int64_t now_ns)
 }
 
 static enum fdp_verdict take(struct fdp_master *m, const struct fdp_header *h, const uint8_t *body,
-			     int64_t now_ns)
+			     int64_t now_ns, bool *fresh)
 {
 	struct fdp_peer *peer = &m->peers[h->sender];
 
@@ -149,13 +149,14 @@ static enum fdp_verdict take(struct fdp_master *m, const struct fdp_header *h, c
 			return FDP_BAD_SESSION;
 		if (fdp_join_decode(body, h->payload_len, &join) || join.index != h->sender)
 			return FDP_BAD_FORMAT;
-		fdp_master_on_join(m, h, &join, now_ns);
+		*fresh = fdp_master_on_join(m, h, &join, now_ns);
 		return FDP_GOOD;
 	}
 	if (peer->state == FDP_PEER_ABSENT && !peer->joins)
 		return FDP_BAD_SESSION;
 	if (!fdp_replay_take(&peer->window, h->sequence))
 		return FDP_BAD_REPLAY;
+	*fresh = true;
 	peer->status.last_heard_ns = now_ns;
 	if (!fdp_peer_present(peer->state)) {
 		if (h->kind != FDP_LEAVE)
@@ -165,15 +166,27 @@ static enum fdp_verdict take(struct fdp_master *m, const struct fdp_header *h, c
 	return dispatch(m, h, body, now_ns);
 }
 
-int fdp_master_receive(struct fdp_master *m, const uint8_t *bytes, size_t len, int64_t now_ns)
+int fdp_master_answers(const struct fdp_master *m)
 {
+	return m->answers;
+}
+
+int fdp_master_receive(struct fdp_master *m, const uint8_t *bytes, size_t len, int64_t now_ns,
+		       bool *out_fresh)
+{
+	bool fresh = false;
 	struct fdp_header h;
 	enum fdp_verdict verdict = fdp_gate_open(&m->gate, bytes, len, &h);
 
 	m->counters.datagrams_in++;
 	m->counters.bytes_in += len;
-	if (verdict == FDP_GOOD)
-		verdict = take(m, &h, bytes + FDP_HEADER_BYTES, now_ns);
+	if (verdict == FDP_GOOD) {
+		m->answers = h.sender;
+		verdict = take(m, &h, bytes + FDP_HEADER_BYTES, now_ns, &fresh);
+		m->answers = -1;
+	}
+	if (out_fresh)
+		*out_fresh = verdict == FDP_GOOD && fresh;
 	fdp_count_bad(&m->counters, verdict);
 	return verdict == FDP_GOOD ? h.sender : fdp_verdict_result(verdict);
 }

@@ -84,7 +84,7 @@ static void fuzz_deliver(struct fuzz_pair *p)
 			abort();
 		memcpy(exact, p->queue[i].bytes, p->queue[i].len);
 		if (p->queue[i].to < 0)
-			fdp_master_receive(p->master, exact, p->queue[i].len, p->now_ns);
+			fdp_master_receive(p->master, exact, p->queue[i].len, p->now_ns, NULL);
 		else
 			fdp_node_receive(p->nodes[p->queue[i].to], exact, p->queue[i].len, p->now_ns);
 		free(exact);

@@ -329,8 +329,11 @@ static void tend_node(struct sim *s, struct sim_node *n)
 static void deliver(struct sim *s, const struct sim_packet *p)
 {
 	if (p->to < 0) {
+		bool fresh = false;
+
 		if (s->master)
-			fdp_master_receive(s->master, p->bytes, p->len, s->now_ns);
+			fdp_master_receive(s->master, p->bytes, p->len, s->now_ns, &fresh);
+		s->fresh += fresh;
 	} else if (s->nodes[p->to].node) {
 		fdp_node_receive(s->nodes[p->to].node, p->bytes, p->len, s->now_ns);
 		tend_node(s, &s->nodes[p->to]);

@@ -62,6 +62,7 @@ struct sim {
 	int64_t begin_at_ns, begun_ns;
 	uint64_t state_hash[SIM_STATES];
 	uint64_t swapped, joined, left, late, evicted, mismatches, refused;
+	uint64_t fresh; /* datagrams that the master took as no recording */
 	bool join_pending;
 	char reason[FDP_REASON_MAX];
 	int64_t *delivery_ns; /* begin to FDP_NODE_FRAME, all nodes and frames */

@@ -595,6 +595,61 @@ static void replays(void **state)
 	sim_finish(&s);
 }
 
+/* How many of the recorded datagrams to the master are taken for the node's own of now. */
+static size_t count_fresh(struct sim *s, const struct recording *r, size_t *out_answered)
+{
+	size_t count = 0;
+
+	*out_answered = 0;
+	for (size_t i = 0; i < r->count; i++) {
+		uint8_t *copy;
+		bool fresh = true;
+
+		if (r->items[i].to >= 0)
+			continue;
+		copy = unit_copy(r->items[i].bytes, r->items[i].len);
+		if (fdp_master_receive(s->master, copy, r->items[i].len, s->now_ns, &fresh) >= 0)
+			++*out_answered;
+		count += fresh;
+		free(copy);
+		assert_int_equal(fdp_master_answers(s->master), -1);
+	}
+	return count;
+}
+
+/* The source of a recording is not where the node is: nothing of it may teach an address. */
+static void recordings_are_not_fresh(void **state)
+{
+	struct recording r = { 0 };
+	size_t fresh, answered;
+	struct sim s;
+
+	(void)state;
+	sim_init(&s, 3, 23);
+	s.tamper = record;
+	s.tamper_ctx = &r;
+	sim_start_all(&s);
+	sim_assemble(&s);
+	sim_run_frames(&s, 10);
+	s.tamper = NULL;
+	assert_true(s.fresh >= 3 * 3 * 10); /* an ACK, READY and SWAPPED a frame */
+	fresh = count_fresh(&s, &r, &answered);
+	assert_int_equal(fresh, 0);
+	assert_true(answered >= 3); /* the first JOINs are answered all the same */
+	printf("# %zu recorded datagrams again: %zu answered, %zu taken as fresh\n", r.count,
+	       answered, fresh);
+	/* To the next master, which has not heard of the nodes. */
+	sim_kill_master(&s);
+	sim_start_master(&s);
+	assert_int_equal(count_fresh(&s, &r, &answered), 0);
+	sim_assemble(&s);
+	assert_int_equal(count_fresh(&s, &r, &answered), 0);
+	for (size_t i = 0; i < r.count; i++)
+		free(r.items[i].bytes);
+	free(r.items);
+	sim_finish(&s);
+}
+
 /* Every datagram comes a second time with one bit turned: counted, and of no effect. */
 static bool flip_copies(struct sim *s, int to, uint8_t *bytes, size_t len)
 {
@@ -681,13 +736,13 @@ static void other_version(void **state)
 	sim_start_master(&s);
 	fdp_join_encode(&join, bytes + FDP_HEADER_BYTES, FDP_JOIN_BYTES);
 	fdp_wire_seal(&h, key, bytes);
-	assert_int_equal(fdp_master_receive(s.master, bytes, sizeof bytes, s.now_ns), 0);
+	assert_int_equal(fdp_master_receive(s.master, bytes, sizeof bytes, s.now_ns, NULL), 0);
 	assert_int_equal(s.refused, 1);
 	assert_non_null(strstr(s.reason, "speaks 2, the master 1"));
 	/* Anything else of that version is not looked at. */
 	h.kind = FDP_ACK;
 	fdp_wire_seal(&h, key, bytes);
-	assert_int_equal(fdp_master_receive(s.master, bytes, sizeof bytes, s.now_ns), GR_ERR_VERSION);
+	assert_int_equal(fdp_master_receive(s.master, bytes, sizeof bytes, s.now_ns, NULL), GR_ERR_VERSION);
 	sim_finish(&s);
 }
 
@@ -759,6 +814,7 @@ int main(void)
 		cmocka_unit_test(mismatch),
 		cmocka_unit_test(master_compares),
 		cmocka_unit_test(replays),
+		cmocka_unit_test(recordings_are_not_fresh),
 		cmocka_unit_test(bit_flips),
 		cmocka_unit_test(refusals),
 		cmocka_unit_test(other_version),
