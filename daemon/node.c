@@ -121,7 +121,9 @@ static void bad_datagram(struct node *n, int result, const struct net_address *f
 		return;
 	net_address_text(from, text);
 	gr_warning("dropped a datagram from %s: %s (%" PRIu64 " such since the last line, %" PRIu64
-		   " in all)", text, gr_result_name(result), times, limit->total);
+		   " in all)", text,
+		   result == GR_ERR_MISMATCH ? "of another session" : gr_result_name(result), times,
+		   limit->total);
 }
 
 static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,

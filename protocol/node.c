@@ -235,20 +235,23 @@ int fdp_node_receive(struct fdp_node *n, const uint8_t *bytes, size_t len, int64
 
 	n->counters.datagrams_in++;
 	n->counters.bytes_in += len;
-	if (verdict == FDP_BAD_SESSION && n->status != FDP_NODE_ALONE) {
+	if (verdict == FDP_BAD_SESSION) {
 		/*
 		 * A key holder speaks of another session: a new master, or a
 		 * recording. Asking shows which, and changes nothing here until
 		 * the answer echoes our nonce.
 		 */
-		if (!n->hinted_ns || now_ns - n->hinted_ns >= n->params.join_ns) {
+		if (n->status != FDP_NODE_ALONE &&
+		    (!n->hinted_ns || now_ns - n->hinted_ns >= n->params.join_ns)) {
 			n->hinted_ns = now_ns;
 			send_join(n, 0, now_ns);
 		}
-		if (!n->gate.session) {
-			/* Nothing bad while we are in no session: a master that we are asking. */
+		/*
+		 * Nothing bad while we are in no session: a master that we are
+		 * asking, or one that called while our scene was being loaded.
+		 */
+		if (!n->gate.session)
 			return GR_ERR_MISMATCH;
-		}
 	} else if (verdict == FDP_GOOD) {
 		if (h.kind == FDP_WELCOME)
 			verdict = on_welcome(n, &h, body, now_ns);
