@@ -13,7 +13,7 @@ demo() {
 		>"$out.said" 2>&1 || { fail "demo: exit $?"; cat "$out.said"; }
 }
 
-demo cave 20 --layout "$srcdir/layouts/cave4.cave" --pixels-scale 0.1 --every 10 --exr
+demo cave 20 --layout "$srcdir/layouts/cave4.cave" --pixels-scale 0.125 --every 10 --exr
 check_summary "$work/cave/summary.json" 20 4
 sed -n '/swap skew/p; /commit to/p; /frames in/p' "$work/cave.said"
 for wall in front left right; do
@@ -30,7 +30,7 @@ cmp -s "$work/cave/front-000010.png" "$work/cave/front-000020.png" &&
 	fail "nothing moved in ten frames"
 
 # What is shown is a function of the frame's number alone.
-demo again 20 --layout "$srcdir/layouts/cave4.cave" --pixels-scale 0.1
+demo again 20 --layout "$srcdir/layouts/cave4.cave" --pixels-scale 0.125
 for wall in front left right floor; do
 	cmp "$work/cave/wall-$wall.png" "$work/again/wall-$wall.png" || fail "$wall differs"
 done
