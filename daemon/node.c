@@ -13,6 +13,7 @@
 #define RECEIVE_MOST 256
 /* A master that waits for a slow node still speaks several times a second. */
 #define SILENCE_NS (5 * GR_NS_PER_S)
+#define WINDOW_NS (100 * GR_NS_PER_MS) /* a window is answered while no frame comes */
 #define GPU_SLICE_NS GR_NS_PER_MS /* the longest that the socket waits for the GPU */
 
 static void send_datagram(void *ctx, const uint8_t *bytes, size_t len)
@@ -46,15 +47,19 @@ static void apply_frame(struct node *n, uint64_t frame, int64_t now_ns)
 	n->wanted_ns = now_ns;
 }
 
+static void window_closed(struct node *n)
+{
+	gr_notice("the window was closed");
+	loop_stop(n->loop);
+}
+
 /* The swap itself comes first and alone; what it entails waits for receive to return. */
 static void swap(struct node *n, uint64_t frame)
 {
 	if (n->ready == 0 || frame != n->ready)
 		return; /* not ready in time, or told twice */
-	if (n->picture && !target_swap(n->target)) {
-		gr_notice("the window was closed");
-		loop_stop(n->loop);
-	}
+	if (n->picture && !target_swap(n->target))
+		window_closed(n);
 	n->swap_ns = gr_clock_now(&gr_clock_monotonic);
 	n->swapped = n->report = frame;
 	n->ready = 0;
@@ -208,6 +213,16 @@ static void on_second(void *ctx, int64_t now_ns)
 	loop_timer_set(n->loop, n->second_timer, now_ns + GR_NS_PER_S);
 }
 
+/* A window that nobody answers is taken for a dead one, and could not be closed. */
+static void on_window(void *ctx, int64_t now_ns)
+{
+	struct node *n = ctx;
+
+	if (!target_poll(n->target))
+		window_closed(n);
+	loop_timer_set(n->loop, n->window_timer, now_ns + WINDOW_NS);
+}
+
 static bool picture_due(const struct node *n, uint64_t frame)
 {
 	return n->pictures && frame != 0 && frame != n->saved && n->params.every > 0 &&
@@ -318,6 +333,8 @@ static int join_loop(struct node *n)
 	int fds[2], count, r;
 
 	r = n->tick_timer = loop_timer_create(n->loop, on_tick, n);
+	if (r >= 0 && n->params.window)
+		r = n->window_timer = loop_timer_create(n->loop, on_window, n);
 	if (r >= 0)
 		r = n->second_timer = loop_timer_create(n->loop, on_second, n);
 	count = net_fds(n->net, fds);
@@ -356,6 +373,8 @@ int node_create(struct node **out, struct loop *loop, struct net *net, struct ta
 		return r;
 	}
 	on_second(n, now_ns);
+	if (n->params.window)
+		on_window(n, now_ns);
 	on_tick(n, now_ns);
 	*out = n;
 	return GR_OK;

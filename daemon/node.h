@@ -30,6 +30,7 @@ struct node_params {
 	const struct scene_file *scene_file;
 	uint8_t content_hash[32];
 	uint8_t key[FDP_KEY_BYTES];
+	bool window;    /* the target is a window, which must be answered */
 	bool once;      /* end when the master ends or refuses */
 	uint64_t every; /* save pictures of frames that this divides; 0: the last alone */
 };
@@ -63,7 +64,7 @@ struct node {
 	bool master_gone;         /* left, refused, or lost: nothing will come */
 	int status;               /* enum gr_exit, when the loop stops */
 
-	int tick_timer, second_timer;
+	int tick_timer, second_timer, window_timer;
 	uint64_t logged_swapped;
 	struct gr_log_limit bad[NODE_REASONS], refused_limit, invalid_limit, mismatch_limit, send_limit;
 	uint64_t seen_send_failed;

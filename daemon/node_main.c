@@ -157,6 +157,8 @@ static int open_all(struct opened *o, const struct node_options *options)
 		.layout = o->files.layout,
 		.index = o->index,
 		.scene_file = o->files.scene_file,
+		.window = kind_of(&o->files.layout->nodes[o->index], options->target) !=
+			  TARGET_HEADLESS,
 		.once = options->once,
 		.every = (uint64_t)options->every,
 	};

@@ -210,6 +210,11 @@ bool target_swap(struct target *target)
 	return target->ops->swap(target);
 }
 
+bool target_poll(struct target *target)
+{
+	return !target->ops->poll || target->ops->poll(target);
+}
+
 const char *target_renderer_name(const struct target *target)
 {
 	return target->renderer;

@@ -42,6 +42,8 @@ void target_bind(const struct target *target, int eye, bool read);
 void target_size(const struct target *target, int *width, int *height);
 /* Shows what was drawn. Headless: nothing but GL_FLUSH. False when the window was closed. */
 bool target_swap(struct target *target);
+/* Takes what the window system says while nothing is shown. False when the window was closed. */
+bool target_poll(struct target *target);
 /* "llvmpipe (LLVM 15.0.6, 256 bits)", for log and summary. */
 const char *target_renderer_name(const struct target *target);
 const char *target_platform_name(const struct target *target);

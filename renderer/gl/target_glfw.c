@@ -163,13 +163,20 @@ static int glfw_open(struct target *target, const struct target_params *params)
 	return open_window(target, params);
 }
 
+static bool glfw_poll(struct target *target)
+{
+	struct glfw_backend *glfw = target->backend;
+
+	glfwPollEvents();
+	return !glfwWindowShouldClose(glfw->window);
+}
+
 static bool glfw_swap(struct target *target)
 {
 	struct glfw_backend *glfw = target->backend;
 
 	glfwSwapBuffers(glfw->window);
-	glfwPollEvents();
-	return !glfwWindowShouldClose(glfw->window);
+	return glfw_poll(target);
 }
 
 static void glfw_close(struct target *target)
@@ -189,6 +196,7 @@ static void glfw_close(struct target *target)
 const struct target_ops target_glfw_ops = {
 	.open = glfw_open,
 	.swap = glfw_swap,
+	.poll = glfw_poll,
 	.close = glfw_close,
 	.offscreen = false,
 };

@@ -11,6 +11,7 @@ struct target_ops {
 	/* Makes an OpenGL 4.5 core context current and sets backend, size and platform. */
 	int (*open)(struct target *target, const struct target_params *params);
 	bool (*swap)(struct target *target);
+	bool (*poll)(struct target *target); /* NULL: nobody can say anything */
 	void (*close)(struct target *target); /* also after a failed open */
 	bool offscreen;                       /* draws into framebuffers of its own */
 };

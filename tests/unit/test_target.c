@@ -6,6 +6,8 @@
 #include "tests/unit/gl.h"
 
 #include <epoxy/gl.h>
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 
 static void clear_and_read(struct target *target, int eye, float red, uint8_t expect)
 {
@@ -35,6 +37,7 @@ static void test_headless(void **state)
 	assert_int_equal(target_framebuffer(target, 0), target_framebuffer(target, 1));
 	clear_and_read(target, 0, 1.0f, 255);
 	assert_true(target_swap(target));
+	assert_true(target_poll(target));
 	target_destroy(&target);
 	assert_null(target);
 	target_destroy(&target);
@@ -125,6 +128,11 @@ static void test_window(void **state)
 	assert_int_equal(target_framebuffer(target, 0), 0);
 	clear_and_read(target, 0, 1.0f, 255);
 	assert_true(target_swap(target));
+	assert_true(target_poll(target));
+	/* What the window manager's close button does. */
+	glfwSetWindowShouldClose(glfwGetCurrentContext(), GLFW_TRUE);
+	assert_false(target_poll(target));
+	assert_false(target_swap(target));
 	target_destroy(&target);
 
 	params.kind = TARGET_FULLSCREEN;
