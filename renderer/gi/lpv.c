@@ -24,6 +24,7 @@ static const struct lpv *lpv_of_const(const struct gi_method *method)
 
 /* Buffers are written as storage and read as textures, uploaded and read back. */
 static const GLbitfield barriers = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+				   GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
 				   GL_BUFFER_UPDATE_BARRIER_BIT;
 
 static struct lpv_buffer storage(GLenum format, size_t bytes, const void *data)
@@ -50,17 +51,77 @@ static void bind_storage(enum lpv_binding at, const struct lpv_buffer *b)
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, at, b->buffer);
 }
 
+/* Whether a link to another cell of the lattice is not all open; others lead to darkness. */
+static bool stopped_inside(const struct links *links, size_t index, const struct link_surface *s)
+{
+	const int *size = links->lattice.size;
+	int x = (int)(index % (size_t)size[0]);
+	int y = (int)(index / (size_t)size[0] % (size_t)size[1]);
+	int z = (int)(index / (size_t)size[0] / (size_t)size[1]);
+
+	for (int j = 0; j < SECTOR_COUNT; j++) {
+		const signed char *o = sector_offset[j];
+
+		if (s->through[j] != LINK_OPEN &&
+		    lattice_inside(&links->lattice, x + o[0], y + o[1], z + o[2]))
+			return true;
+	}
+	return false;
+}
+
+/*
+ * The cells that meet surfaces, those that lpv_reflect does as a whole first,
+ * and by the number of their stopped links: neighbours in the list take as long.
+ */
+static int upload_surface_cells(struct lpv *lpv, const struct links *links)
+{
+	size_t cells = lattice_cells(&links->lattice), start = 0;
+	size_t after[2 * (SECTOR_COUNT + 1) + 1] = { 0 };
+	uint8_t *whole = calloc(cells, sizeof *whole);
+	uint32_t (*list)[2] = calloc(links->surface_count + 1, sizeof *list);
+
+	if (!whole || !list) {
+		free(whole);
+		free(list);
+		return GR_ERR_NOMEM;
+	}
+	for (int pass = 0; pass < 2; pass++) {
+		for (size_t i = 0; i < cells; i++) {
+			uint32_t record = links->surface_of[i];
+			const struct link_surface *s = &links->surfaces[record ? record - 1 : 0];
+
+			if (!record)
+				continue;
+			whole[i] = stopped_inside(links, i, s);
+			size_t bin = SECTOR_COUNT - s->count + (whole[i] ? 0 : SECTOR_COUNT + 1);
+			if (pass == 0) {
+				after[bin + 1]++;
+				lpv->whole_count += whole[i];
+				continue;
+			}
+			list[after[bin]][0] = (uint32_t)i;
+			list[after[bin]++][1] = record;
+		}
+		for (size_t bin = 0; pass == 0 && bin < sizeof after / sizeof *after; bin++)
+			start = after[bin] += start;
+	}
+	lpv->surface_cells = storage(GL_RG32UI, (links->surface_count + 1) * sizeof *list, list);
+	lpv->whole = storage(GL_R8UI, cells, whole);
+	free(whole);
+	free(list);
+	return GR_OK;
+}
+
 /* Surface records and blocks as the shaders read them. */
 static int upload_links(struct lpv *lpv, const struct links *links)
 {
 	size_t count = links->surface_count + 1;
 	uint32_t *records = calloc(count * 8, sizeof *records);
-	uint32_t *cells = calloc(count, sizeof *cells);
 	uint32_t *of = calloc(lattice_cells(&links->lattice) * 2, sizeof *of);
 	struct link_block *blocks = calloc(links->block_count + 1, sizeof *blocks);
 	int result = GR_ERR_NOMEM;
 
-	if (!records || !cells || !of || !blocks)
+	if (!records || !of || !blocks)
 		goto out;
 	/* record 0: all open, nothing stopped */
 	for (int w = 0; w < 7; w++)
@@ -68,8 +129,6 @@ static int upload_links(struct lpv *lpv, const struct links *links)
 	for (size_t i = 0; i < lattice_cells(&links->lattice); i++) {
 		of[2 * i] = links->surface_of[i];
 		of[2 * i + 1] = links->fronts.of[i];
-		if (links->surface_of[i])
-			cells[links->surface_of[i] - 1] = (uint32_t)i;
 	}
 	for (size_t i = 0; i < links->surface_count; i++) {
 		const struct link_surface *s = &links->surfaces[i];
@@ -79,7 +138,6 @@ static int upload_links(struct lpv *lpv, const struct links *links)
 		records[8 * (i + 1) + 7] = s->first | s->count << 27;
 	}
 	lpv->surfaces = storage(GL_RGBA32UI, count * 8 * sizeof *records, records);
-	lpv->surface_cells = storage(GL_R32UI, count * sizeof *cells, cells);
 	lpv->surface_count = (int)links->surface_count;
 	lpv->surface_of = storage(GL_RG32UI, lattice_cells(&links->lattice) * 2 * sizeof *of, of);
 	lpv->fronts = storage(GL_R32UI, links->fronts.count * FRONT_MASKS * sizeof(uint32_t),
@@ -94,10 +152,14 @@ static int upload_links(struct lpv *lpv, const struct links *links)
 	}
 	_Static_assert(sizeof(struct link_block) == 32, "two vec4");
 	lpv->blocks = storage(GL_RGBA32F, links->block_count * sizeof *blocks, blocks);
-	result = dispatch_plan(links->surface_count, 64, &lpv->per_surface);
+	result = upload_surface_cells(lpv, links);
+	if (result == GR_OK)
+		result = dispatch_plan((uint64_t)lpv->whole_count, 64, &lpv->per_whole);
+	if (result == GR_OK)
+		result = dispatch_plan((uint64_t)(lpv->surface_count - lpv->whole_count), 64,
+				       &lpv->per_surface);
 out:
 	free(records);
-	free(cells);
 	free(of);
 	free(blocks);
 	return result;
@@ -139,14 +201,25 @@ static void bind(const struct gi_method *method)
 	glBindTextureUnit(LPV_UNIT_FRONTS, lpv->fronts.texture);
 }
 
+static void bind_image(GLuint at, const struct lpv_buffer *b)
+{
+	glBindImageTexture(at, b->texture, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+}
+
 static void reflect(struct lpv *lpv)
 {
 	glBindTextureUnit(LPV_UNIT_BLOCKS, lpv->blocks.texture);
 	glBindTextureUnit(LPV_UNIT_INJECT, lpv->inject.texture);
 	glBindTextureUnit(LPV_UNIT_SURFACE_CELLS, lpv->surface_cells.texture);
 	bind_storage(LPV_BINDING_INJECT, &lpv->emitted); /* written there */
-	glUseProgram(lpv->reflect);
-	glDispatchCompute(lpv->per_surface.x, lpv->per_surface.y, 1);
+	if (lpv->whole_count > 0) {
+		glUseProgram(lpv->gather);
+		glDispatchCompute(lpv->per_whole.x, lpv->per_whole.y, 1);
+	}
+	if (lpv->whole_count < lpv->surface_count) {
+		glUseProgram(lpv->reflect);
+		glDispatchCompute(lpv->per_surface.x, lpv->per_surface.y, 1);
+	}
 	glMemoryBarrier(barriers);
 }
 
@@ -165,13 +238,15 @@ void lpv_propagate(struct lpv *lpv, int steps, int looks)
 			reflect(lpv);
 		if (look) {
 			lpv->current = !lpv->current;
-			bind_storage(LPV_BINDING_NEW_LIGHT, &lpv->light[lpv->current]);
+			bind_image(LPV_IMAGE_NEW_LIGHT, &lpv->light[lpv->current]);
 		}
 		glUseProgram(look ? lpv->last_step : lpv->step);
 		glBindTextureUnit(LPV_UNIT_EMITTED, lpv->emitted.texture);
+		glBindTextureUnit(LPV_UNIT_WHOLE, lpv->whole.texture);
 		bind_storage(LPV_BINDING_NEXT, &lpv->sent[!lpv->sending]);
-		glDispatchCompute(((unsigned)size[0] + 7) / 8, ((unsigned)size[1] + 3) / 4,
-				  3 * (((unsigned)size[2] + LPV_SEGMENT - 1) / LPV_SEGMENT));
+		bind_image(LPV_IMAGE_NEXT, &lpv->sent[!lpv->sending]);
+		glDispatchCompute(((unsigned)size[0] + 15) / 16, ((unsigned)size[2] + 7) / 8,
+				  3 * (((unsigned)size[1] + LPV_SEGMENT - 1) / LPV_SEGMENT));
 		lpv->sending = !lpv->sending;
 	}
 	glMemoryBarrier(barriers);
@@ -300,6 +375,7 @@ static void destroy(struct gi_method *method)
 	program_destroy(&lpv->step);
 	program_destroy(&lpv->last_step);
 	program_destroy(&lpv->reflect);
+	program_destroy(&lpv->gather);
 	glDeleteBuffers(1, &lpv->block);
 	for (int i = 0; i < 2; i++) {
 		storage_finish(&lpv->light[i]);
@@ -309,6 +385,7 @@ static void destroy(struct gi_method *method)
 	storage_finish(&lpv->fronts);
 	storage_finish(&lpv->surfaces);
 	storage_finish(&lpv->surface_cells);
+	storage_finish(&lpv->whole);
 	storage_finish(&lpv->inject);
 	storage_finish(&lpv->emitted);
 	storage_finish(&lpv->blocks);
@@ -341,18 +418,27 @@ static int create_step(struct lpv *lpv)
 {
 	const int *size = lpv->lattice.size;
 	char defines[256];
+	size_t length;
 	int result;
 
 	snprintf(defines, sizeof defines,
 		 "#define LATTICE_X %d\n#define LATTICE_Y %d\n#define LATTICE_Z %d\n#define SEGMENT %d\n",
 		 size[0], size[1], size[2], LPV_SEGMENT);
+	length = strlen(defines);
 	result = program_create_compute(&lpv->step, "lpv_step.comp", defines);
 	if (result == GR_OK)
 		result = program_create_compute(&lpv->reflect, "lpv_reflect.comp", defines);
 	if (result != GR_OK)
 		return result;
-	glProgramUniform1i(lpv->reflect, 0, lpv->surface_count);
-	strcat(defines, "#define WITH_LOOK\n");
+	glProgramUniform1i(lpv->reflect, 0, lpv->whole_count);
+	glProgramUniform1i(lpv->reflect, 1, lpv->surface_count);
+	snprintf(defines + length, sizeof defines - length, "#define WITH_GATHER\n");
+	result = program_create_compute(&lpv->gather, "lpv_reflect.comp", defines);
+	if (result != GR_OK)
+		return result;
+	glProgramUniform1i(lpv->gather, 0, 0);
+	glProgramUniform1i(lpv->gather, 1, lpv->whole_count);
+	snprintf(defines + length, sizeof defines - length, "#define WITH_LOOK\n");
 	return program_create_compute(&lpv->last_step, "lpv_step.comp", defines);
 }
 

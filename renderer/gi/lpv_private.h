@@ -19,7 +19,12 @@ enum lpv_binding {
 	LPV_BINDING_NEXT = 13,
 	LPV_BINDING_SPLAT = 14,
 	LPV_BINDING_CHECK = 15,
-	LPV_BINDING_NEW_LIGHT = 15,
+};
+
+/* Images, lpv_step. */
+enum lpv_image {
+	LPV_IMAGE_NEXT,
+	LPV_IMAGE_NEW_LIGHT,
 };
 
 /* Texture units; 8 to 11 are bound for shading and for the lamps' maps. */
@@ -32,6 +37,7 @@ enum lpv_unit {
 	LPV_UNIT_BEFORE = 11, /* lpv_check */
 	LPV_UNIT_START_INJECT = 11, /* lpv_thesis_start */
 	LPV_UNIT_EMITTED = 12,
+	LPV_UNIT_WHOLE = 13, /* lpv_step */
 	LPV_UNIT_BLOCKS = 12, /* lpv_reflect, with the next two */
 	LPV_UNIT_INJECT = 13,
 	LPV_UNIT_SURFACE_CELLS = 14,
@@ -53,7 +59,7 @@ struct lattice_block {
 };
 
 #define LPV_LIGHT_FLOATS 12 /* a cell in the light buffers: F, V of three bands */
-#define LPV_SEGMENT 8	    /* cells that an invocation walks up */
+#define LPV_SEGMENT 16	    /* cells that an invocation walks up */
 #define LPV_RING 4          /* frames until a check is read back */
 
 struct lpv_check {
@@ -86,16 +92,17 @@ struct lpv {
 	int settle_steps;
 	char description[320];
 
-	unsigned step, last_step, reflect, splat_peak, splat_sum, splat_resolve, check; /* programs */
+	unsigned step, last_step, reflect, gather, splat_peak, splat_sum, splat_resolve, check; /* programs */
 	unsigned block, splat, checks;
-	struct lpv_buffer surface_of, fronts, surfaces, surface_cells, inject, emitted, blocks;
+	struct lpv_buffer surface_of, fronts, surfaces, surface_cells, whole, inject, emitted, blocks;
 	struct lpv_buffer light[2]; /* after the last step of a frame; light[current] is the newest */
 	int current;
 	struct lpv_buffer sent[2]; /* with a border of one dark cell, scaled by the clamp */
 	int sending;      /* sent[sending] is the newest */
 	struct lpv_start start;
-	struct dispatch per_cell, per_surface;
+	struct dispatch per_cell, per_whole, per_surface;
 	int surface_count;
+	int whole_count; /* of them, done as a whole by lpv_reflect */
 
 	/* What the light stands for. */
 	bool started;

@@ -1,32 +1,35 @@
 #version 450 core
 // One step of the propagation, L <- I + P L (renderer/gi/lpv_cpu.c is the same
-// in plain C). Gather: each cell takes from its 26 neighbours what they send
-// through the link, and what lpv_reflect.comp left there before: the light of
-// the lamps and what its own links stopped.
+// in plain C). Gather: each cell takes from its 26 neighbours what they send,
+// and what lpv_reflect.comp left there before: the light of the lamps and what
+// its own links stopped. Cells with stopped links to neighbours are done there
+// as a whole, so this kernel knows no links.
 //
-// An invocation walks up a column of cells with one band: every cell of the
-// nine columns around it is read once and serves three layers, and all sums
-// stay in registers. The lattice has a dark border of one cell, so nothing
-// asks where the edge is; sizes are constants. Cells are stored as they are
-// sent, scaled by their clamp (see clamp_scale); the last steps of a frame
-// (WITH_LOOK) also write them as they are.
+// An invocation walks up 2 x 2 columns of cells with one band: every cell of
+// the 16 columns around is read once and serves four cells in three layers,
+// and all sums stay in registers. The lattice has a dark border of one cell,
+// so nothing asks where the edge is; sizes are constants. Cells are stored as
+// they are sent, scaled by their clamp (see clamp_scale); the last steps of a
+// frame (WITH_LOOK) also write them as they are.
 // check: #define LATTICE_X 32
 // check: #define LATTICE_Y 32
 // check: #define LATTICE_Z 32
-// check: #define SEGMENT 8
+// check: #define SEGMENT 16
 // check: #define WITH_LOOK
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 1) in;
 
 #include "lpv_lattice.glsl"
 
-layout(std430, binding = 13) writeonly buffer NextBuffer { vec4 next[]; };
 layout(binding = 11) uniform samplerBuffer sent;
 layout(binding = 12) uniform samplerBuffer emitted;
+layout(binding = 13) uniform usamplerBuffer whole; // 1: emitted is all the light
+// Images, since storage buffers take a word at a time (see lpv_lattice.glsl).
+layout(std430, binding = 13) writeonly buffer NextBuffer { vec4 next[]; };
 #ifdef WITH_LOOK
-layout(std430, binding = 15) writeonly buffer NewLightBuffer { vec4 new_light[]; };
+layout(rgba32f, binding = 1) uniform writeonly imageBuffer new_light;
 #endif
 
-const int SEGMENTS = (LATTICE_Z + SEGMENT - 1) / SEGMENT;
+const int SEGMENTS = (LATTICE_Y + SEGMENT - 1) / SEGMENT;
 const int STRIDE_Y = LATTICE_X + 2;
 const int STRIDE_Z = STRIDE_Y * (LATTICE_Y + 2);
 const int BORDERED = STRIDE_Z * (LATTICE_Z + 2);
@@ -38,16 +41,6 @@ float kept(float phi)
 	precise float k = phi < 0.0 ? 0.0 : phi;
 
 	return k;
-}
-
-// Transmittance in 1/128 towards the neighbour at (dx, dy, dz); constants after unrolling.
-float through(uint words[7], int dx, int dy, int dz)
-{
-	int n = dx + 1 + 3 * (dy + 1) + 9 * (dz + 1);
-	int j = n > 13 ? n - 1 : n;
-
-	// by way of int: AVX2 has no conversion from unsigned
-	return float(int((words[j >> 2] >> (8 * (j & 3))) & 255u));
 }
 
 void add(inout vec4 sum, float phi, float mu, int jx, int jy, int jz)
@@ -62,27 +55,37 @@ void add(inout vec4 sum, float phi, float mu, int jx, int jy, int jz)
 		sum.w += jz > 0 ? phi : -phi;
 }
 
+float signed_sum(int dx, int dy, float x, float y)
+{
+	if (dx == 0)
+		return dy == 0 ? 0.0 : dy < 0 ? y : -y;
+	if (dy == 0)
+		return dx < 0 ? x : -x;
+	if (dx < 0)
+		return dy < 0 ? x + y : x - y;
+	return dy < 0 ? y - x : -(x + y);
+}
+
+// The cell at (sx, sy) in this layer, times the constants of the three kinds.
+#define SOURCE(sx, sy)                                                                         \
+	c = texelFetch(sent, source + (sx) + (sy) * STRIDE_Z);                                 \
+	flux = fa * c.x;                                                                       \
+	to_x = fb * c.y;                                                                       \
+	to_z = fb * c.w;                                                                       \
+	to_y = fb * c.z;
+
 #define LESS(kind) ((kind) > 0 ? (kind) - 1 : 0)
-// What the cell at (dx, dy) in this layer sends to the layers below, here and above.
-#define COLUMN(dx, dy, kind)                                                                  \
+// What it sends to the layers below, here and above of a column; it lies at (dx, dy) from there.
+#define GIVE(column, dx, dz, kind)                                                            \
 	{                                                                                      \
-		vec4 c = texelFetch(sent, source + (dx) + (dy) * STRIDE_Y);                    \
-		float across = 0.0;                                                            \
-		if ((dx) != 0)                                                                 \
-			across = (dx) < 0 ? c.y : -c.y;                                        \
-		if ((dy) != 0)                                                                 \
-			across += (dy) < 0 ? c.z : -c.z;                                       \
-		float slant = fa[kind] * c.x + fb[kind] * across;                              \
-		float rise = fb[kind] * c.w;                                                   \
-		add(low, through(low_words, dx, dy, 1) * kept(slant - rise), fm[kind], -(dx),  \
-		    -(dy), -1);                                                                \
-		add(high, through(high_words, dx, dy, -1) * kept(slant + rise), fm[kind],      \
-		    -(dx), -(dy), 1);                                                          \
+		float slant = flux[kind] + signed_sum(dx, dz, to_x[kind], to_z[kind]);         \
+		add(low[column], kept(slant - to_y[kind]), fm[kind], -(dx), -1, -(dz));        \
+		add(high[column], kept(slant + to_y[kind]), fm[kind], -(dx), 1, -(dz));        \
 		if ((kind) > 0)                                                                \
-			add(mid,                                                               \
-			    through(mid_words, dx, dy, 0) *                                    \
-				    kept(fa[LESS(kind)] * c.x + fb[LESS(kind)] * across),      \
-			    fm[LESS(kind)], -(dx), -(dy), 0);                                  \
+			add(mid[column],                                                       \
+			    kept(flux[LESS(kind)] +                                            \
+				 signed_sum(dx, dz, to_x[LESS(kind)], to_z[LESS(kind)])),      \
+			    fm[LESS(kind)], -(dx), 0, -(dz));                                  \
 	}
 
 // Factor that keeps the sum of the fluxes when negative ones become zero: over
@@ -107,53 +110,64 @@ float clamp_scale(vec4 c)
 	return positive == 0.0 ? 0.0 : 2.0 * half_flux / positive;
 }
 
+// The cell at (sx, sy) of the four, a layer below the newest that was read.
+#define STORE(column, sx, sy)                                                                  \
+	if (cell.x + (sx) < LATTICE_X && cell.z + (sy) < LATTICE_Z) {                            \
+		int index = below + (sx) + (sy) * LATTICE_X * LATTICE_Y;                                     \
+		vec4 e = texelFetch(emitted, band * CELLS + index);                            \
+		vec4 l = texelFetch(whole, index).x != 0u ? e : e + low[column];               \
+		next[source - STRIDE_Y + (sx) + (sy) * STRIDE_Z] = l * clamp_scale(l); \
+		LOOK(band * CELLS + index, l)                                                  \
+	}
+#ifdef WITH_LOOK
+#define LOOK(index, l) imageStore(new_light, index, l);
+#else
+#define LOOK(index, l)
+#endif
+
 void main()
 {
 	int band = int(gl_WorkGroupID.z) / SEGMENTS;
-	ivec3 cell = ivec3(gl_GlobalInvocationID.xy, (int(gl_WorkGroupID.z) % SEGMENTS) * SEGMENT);
-	int end = min(cell.z + SEGMENT, LATTICE_Z);
-	vec4 low = vec4(0.0), mid = vec4(0.0), high = vec4(0.0);
-	uint low_words[7], mid_words[7], high_words[7];
-	// 1/128 is the unit of the transmittance; a power of two, so exact
-	vec3 fa = lattice.sector_a.xyz * (1.0 / 128.0);
-	vec3 fb = lattice.sector_b.xyz * vec3(INVERSE[0], INVERSE[1], INVERSE[2]) * (1.0 / 128.0);
+	ivec3 cell = ivec3(2 * gl_GlobalInvocationID.x, (int(gl_WorkGroupID.z) % SEGMENTS) * SEGMENT, 2 * gl_GlobalInvocationID.y);
+	int end = min(cell.y + SEGMENT, LATTICE_Y);
+	vec4 low[4], mid[4], high[4];
+	vec4 c;
+	vec3 flux, to_x, to_y, to_z;
+	vec3 fa = lattice.sector_a.xyz;
+	vec3 fb = lattice.sector_b.xyz * vec3(INVERSE[0], INVERSE[1], INVERSE[2]);
 	vec3 fm = lattice.sector_mu.xyz * vec3(INVERSE[0], INVERSE[1], INVERSE[2]);
 
-	if (cell.x >= LATTICE_X || cell.y >= LATTICE_Y)
+	if (cell.x >= LATTICE_X || cell.z >= LATTICE_Z)
 		return;
-	for (int w = 0; w < 7; w++)
-		high_words[w] = mid_words[w] = 0u;
-	for (int z = cell.z - 1; z <= end; z++) {
-		int source = band * BORDERED + cell.x + 1 + STRIDE_Y * (cell.y + 1) + STRIDE_Z * (z + 1);
-		int above = cell.x + LATTICE_X * (cell.y + LATTICE_Y * min(z + 1, LATTICE_Z - 1));
-		int record = 2 * int(texelFetch(surface_of, above).x);
-		uvec4 first_words = texelFetch(surfaces, record);
-		uvec4 last_words = texelFetch(surfaces, record + 1);
+	low = mid = high = vec4[4](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+	for (int y = cell.y - 1; y <= end; y++) {
+		int source = band * BORDERED + cell.x + 1 + STRIDE_Y * (y + 1) + STRIDE_Z * (cell.z + 1);
+		int below = cell.x + LATTICE_X * (y - 1 + LATTICE_Y * cell.z);
 
 		low = mid;
 		mid = high;
-		high = vec4(0.0);
-		low_words = mid_words;
-		mid_words = high_words;
-		high_words = uint[7](first_words.x, first_words.y, first_words.z, first_words.w,
-				     last_words.x, last_words.y, last_words.z);
-		COLUMN(0, 0, 0)
-		COLUMN(-1, 0, 1)
-		COLUMN(1, 0, 1)
-		COLUMN(0, -1, 1)
-		COLUMN(0, 1, 1)
-		COLUMN(-1, -1, 2)
-		COLUMN(1, -1, 2)
-		COLUMN(-1, 1, 2)
-		COLUMN(1, 1, 2)
-		if (z > cell.z) {
-			int index = band * CELLS + cell.x + LATTICE_X * (cell.y + LATTICE_Y * (z - 1));
-			vec4 c = texelFetch(emitted, index) + low;
-
-			next[source - STRIDE_Z] = c * clamp_scale(c);
-#ifdef WITH_LOOK
-			new_light[index] = c;
-#endif
+		high = vec4[4](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+		SOURCE(-1, -1) GIVE(0, -1, -1, 2)
+		SOURCE(0, -1) GIVE(0, 0, -1, 1) GIVE(1, -1, -1, 2)
+		SOURCE(1, -1) GIVE(0, 1, -1, 2) GIVE(1, 0, -1, 1)
+		SOURCE(2, -1) GIVE(1, 1, -1, 2)
+		SOURCE(-1, 0) GIVE(0, -1, 0, 1) GIVE(2, -1, -1, 2)
+		SOURCE(0, 0) GIVE(0, 0, 0, 0) GIVE(1, -1, 0, 1) GIVE(2, 0, -1, 1) GIVE(3, -1, -1, 2)
+		SOURCE(1, 0) GIVE(0, 1, 0, 1) GIVE(1, 0, 0, 0) GIVE(2, 1, -1, 2) GIVE(3, 0, -1, 1)
+		SOURCE(2, 0) GIVE(1, 1, 0, 1) GIVE(3, 1, -1, 2)
+		SOURCE(-1, 1) GIVE(0, -1, 1, 2) GIVE(2, -1, 0, 1)
+		SOURCE(0, 1) GIVE(0, 0, 1, 1) GIVE(1, -1, 1, 2) GIVE(2, 0, 0, 0) GIVE(3, -1, 0, 1)
+		SOURCE(1, 1) GIVE(0, 1, 1, 2) GIVE(1, 0, 1, 1) GIVE(2, 1, 0, 1) GIVE(3, 0, 0, 0)
+		SOURCE(2, 1) GIVE(1, 1, 1, 2) GIVE(3, 1, 0, 1)
+		SOURCE(-1, 2) GIVE(2, -1, 1, 2)
+		SOURCE(0, 2) GIVE(2, 0, 1, 1) GIVE(3, -1, 1, 2)
+		SOURCE(1, 2) GIVE(2, 1, 1, 2) GIVE(3, 0, 1, 1)
+		SOURCE(2, 2) GIVE(3, 1, 1, 2)
+		if (y > cell.y) {
+			STORE(0, 0, 0)
+			STORE(1, 1, 0)
+			STORE(2, 0, 1)
+			STORE(3, 1, 1)
 		}
 	}
 }
