@@ -24,7 +24,6 @@ static const struct lpv *lpv_of_const(const struct gi_method *method)
 
 /* Buffers are written as storage and read as textures, uploaded and read back. */
 static const GLbitfield barriers = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
-				   GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
 				   GL_BUFFER_UPDATE_BARRIER_BIT;
 
 static struct lpv_buffer storage(GLenum format, size_t bytes, const void *data)
@@ -201,11 +200,6 @@ static void bind(const struct gi_method *method)
 	glBindTextureUnit(LPV_UNIT_FRONTS, lpv->fronts.texture);
 }
 
-static void bind_image(GLuint at, const struct lpv_buffer *b)
-{
-	glBindImageTexture(at, b->texture, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-}
-
 static void reflect(struct lpv *lpv)
 {
 	glBindTextureUnit(LPV_UNIT_BLOCKS, lpv->blocks.texture);
@@ -238,13 +232,12 @@ void lpv_propagate(struct lpv *lpv, int steps, int looks)
 			reflect(lpv);
 		if (look) {
 			lpv->current = !lpv->current;
-			bind_image(LPV_IMAGE_NEW_LIGHT, &lpv->light[lpv->current]);
+			bind_storage(LPV_BINDING_NEW_LIGHT, &lpv->light[lpv->current]);
 		}
 		glUseProgram(look ? lpv->last_step : lpv->step);
 		glBindTextureUnit(LPV_UNIT_EMITTED, lpv->emitted.texture);
 		glBindTextureUnit(LPV_UNIT_WHOLE, lpv->whole.texture);
 		bind_storage(LPV_BINDING_NEXT, &lpv->sent[!lpv->sending]);
-		bind_image(LPV_IMAGE_NEXT, &lpv->sent[!lpv->sending]);
 		glDispatchCompute(((unsigned)size[0] + 15) / 16, ((unsigned)size[2] + 7) / 8,
 				  3 * (((unsigned)size[1] + LPV_SEGMENT - 1) / LPV_SEGMENT));
 		lpv->sending = !lpv->sending;

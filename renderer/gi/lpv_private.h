@@ -19,12 +19,7 @@ enum lpv_binding {
 	LPV_BINDING_NEXT = 13,
 	LPV_BINDING_SPLAT = 14,
 	LPV_BINDING_CHECK = 15,
-};
-
-/* Images, lpv_step. */
-enum lpv_image {
-	LPV_IMAGE_NEXT,
-	LPV_IMAGE_NEW_LIGHT,
+	LPV_BINDING_NEW_LIGHT = 15,
 };
 
 /* Texture units; 8 to 11 are bound for shading and for the lamps' maps. */
@@ -59,7 +54,7 @@ struct lattice_block {
 };
 
 #define LPV_LIGHT_FLOATS 12 /* a cell in the light buffers: F, V of three bands */
-#define LPV_SEGMENT 16	    /* cells that an invocation walks up */
+#define LPV_SEGMENT 16	    /* layers of cells that an invocation walks up */
 #define LPV_RING 4          /* frames until a check is read back */
 
 struct lpv_check {

@@ -5,8 +5,8 @@
 // its own links stopped. Cells with stopped links to neighbours are done there
 // as a whole, so this kernel knows no links.
 //
-// An invocation walks up 2 x 2 columns of cells with one band: every cell of
-// the 16 columns around is read once and serves four cells in three layers,
+// An invocation walks along y, where memory is near, up 2 x 2 columns of cells
+// with one band: every cell of the 16 columns around is read once and serves four cells in three layers,
 // and all sums stay in registers. The lattice has a dark border of one cell,
 // so nothing asks where the edge is; sizes are constants. Cells are stored as
 // they are sent, scaled by their clamp (see clamp_scale); the last steps of a
@@ -23,10 +23,10 @@ layout(local_size_x = 8, local_size_y = 4, local_size_z = 1) in;
 layout(binding = 11) uniform samplerBuffer sent;
 layout(binding = 12) uniform samplerBuffer emitted;
 layout(binding = 13) uniform usamplerBuffer whole; // 1: emitted is all the light
-// Images, since storage buffers take a word at a time (see lpv_lattice.glsl).
+// Storage buffers: images take twice as long to write on llvmpipe.
 layout(std430, binding = 13) writeonly buffer NextBuffer { vec4 next[]; };
 #ifdef WITH_LOOK
-layout(rgba32f, binding = 1) uniform writeonly imageBuffer new_light;
+layout(std430, binding = 15) writeonly buffer NewLightBuffer { vec4 new_light[]; };
 #endif
 
 const int SEGMENTS = (LATTICE_Y + SEGMENT - 1) / SEGMENT;
@@ -55,27 +55,28 @@ void add(inout vec4 sum, float phi, float mu, int jx, int jy, int jz)
 		sum.w += jz > 0 ? phi : -phi;
 }
 
-float signed_sum(int dx, int dy, float x, float y)
+// What a cell at (dx, dz) has of x and z towards here.
+float signed_sum(int dx, int dz, float x, float z)
 {
 	if (dx == 0)
-		return dy == 0 ? 0.0 : dy < 0 ? y : -y;
-	if (dy == 0)
+		return dz == 0 ? 0.0 : dz < 0 ? z : -z;
+	if (dz == 0)
 		return dx < 0 ? x : -x;
 	if (dx < 0)
-		return dy < 0 ? x + y : x - y;
-	return dy < 0 ? y - x : -(x + y);
+		return dz < 0 ? x + z : x - z;
+	return dz < 0 ? z - x : -(x + z);
 }
 
-// The cell at (sx, sy) in this layer, times the constants of the three kinds.
-#define SOURCE(sx, sy)                                                                         \
-	c = texelFetch(sent, source + (sx) + (sy) * STRIDE_Z);                                 \
+// The cell at (sx, sz) in this layer, times the constants of the three kinds.
+#define SOURCE(sx, sz)                                                                         \
+	c = texelFetch(sent, source + (sx) + (sz) * STRIDE_Z);                                 \
 	flux = fa * c.x;                                                                       \
 	to_x = fb * c.y;                                                                       \
 	to_z = fb * c.w;                                                                       \
 	to_y = fb * c.z;
 
 #define LESS(kind) ((kind) > 0 ? (kind) - 1 : 0)
-// What it sends to the layers below, here and above of a column; it lies at (dx, dy) from there.
+// What it sends to the layers below, here and above of a column; it lies at (dx, dz) from there.
 #define GIVE(column, dx, dz, kind)                                                            \
 	{                                                                                      \
 		float slant = flux[kind] + signed_sum(dx, dz, to_x[kind], to_z[kind]);         \
@@ -110,17 +111,17 @@ float clamp_scale(vec4 c)
 	return positive == 0.0 ? 0.0 : 2.0 * half_flux / positive;
 }
 
-// The cell at (sx, sy) of the four, a layer below the newest that was read.
-#define STORE(column, sx, sy)                                                                  \
-	if (cell.x + (sx) < LATTICE_X && cell.z + (sy) < LATTICE_Z) {                            \
-		int index = below + (sx) + (sy) * LATTICE_X * LATTICE_Y;                                     \
+// The cell at (sx, sz) of the four, a layer below the newest that was read.
+#define STORE(column, sx, sz)                                                                  \
+	if (cell.x + (sx) < LATTICE_X && cell.z + (sz) < LATTICE_Z) {                            \
+		int index = below + (sx) + (sz) * LATTICE_X * LATTICE_Y;                                     \
 		vec4 e = texelFetch(emitted, band * CELLS + index);                            \
 		vec4 l = texelFetch(whole, index).x != 0u ? e : e + low[column];               \
-		next[source - STRIDE_Y + (sx) + (sy) * STRIDE_Z] = l * clamp_scale(l); \
+		next[source - STRIDE_Y + (sx) + (sz) * STRIDE_Z] = l * clamp_scale(l); \
 		LOOK(band * CELLS + index, l)                                                  \
 	}
 #ifdef WITH_LOOK
-#define LOOK(index, l) imageStore(new_light, index, l);
+#define LOOK(index, l) new_light[index] = l;
 #else
 #define LOOK(index, l)
 #endif
