@@ -28,7 +28,8 @@
 #define PATHS 2000
 #define STEPS 8
 #define ROUNDS_MAX 41
-#define ROUNDS_MIN 7
+#define ROUNDS_MIN 5
+#define THESIS_FRAMES 12 /* of 8 steps, incremental factor 0.8: 7 % of the first is left */
 #define ROUND_BUDGET_MS 8000.0
 
 static struct truth_texel texels[MAP * MAP];
@@ -153,7 +154,7 @@ static int bench(const struct scene *scene, int cells, bool speed_only)
 		file.gi.incremental = 0.8f;
 		result = gi_lpv_create(&method[k], scene, &file);
 		if (result == GR_OK)
-			result = error_of(method[k], &file, &maps, k ? 20 : 1, &error[k]);
+			result = error_of(method[k], &file, &maps, k ? THESIS_FRAMES : 1, &error[k]);
 	}
 	if (result == GR_OK)
 		print_table(cells, cost, run_rounds(method, cost), speed_only ? NULL : error);
