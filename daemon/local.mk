@@ -11,6 +11,7 @@ daemon_libgdaemon_a_SOURCES = \
 	daemon/node_frame.c daemon/node_frame.h \
 	daemon/notify.c daemon/notify.h \
 	daemon/options.c daemon/options.h \
+	daemon/priority.c daemon/priority.h \
 	daemon/privileges.c daemon/privileges.h \
 	daemon/socket.c daemon/socket.h \
 	daemon/trackers.c daemon/trackers.h

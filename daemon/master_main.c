@@ -9,6 +9,7 @@
 #include "daemon/json.h"
 #include "daemon/master.h"
 #include "daemon/options.h"
+#include "daemon/priority.h"
 #include "daemon/privileges.h"
 #include "daemon/room_files.h"
 
@@ -79,6 +80,8 @@ static int open_all(struct opened *o, const struct master_options *options)
 	r = master_create(&o->master, o->loop, o->net, &o->trackers, &params);
 	if (r >= 0 && path)
 		r = control_create(&o->control, o->loop, path, master_answer, o->master);
+	if (r >= 0)
+		priority_take(options->common.priority);
 	if (r >= 0)
 		r = privileges_drop(options->common.user, path);
 	return r;

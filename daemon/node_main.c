@@ -8,6 +8,7 @@
 #include "daemon/json.h"
 #include "daemon/node.h"
 #include "daemon/options.h"
+#include "daemon/priority.h"
 #include "daemon/privileges.h"
 #include "daemon/room_files.h"
 
@@ -150,6 +151,24 @@ static int open_pictures(struct opened *o, const struct node_options *options,
 	return pictures_create(&o->pictures, &params);
 }
 
+/*
+ * A software OpenGL computes in the thread that calls it: with a real-time
+ * priority it would leave nothing of a processor to anybody else.
+ */
+static void take_priority(const struct opened *o, int priority)
+{
+	static const char *const software[] = { "llvmpipe", "softpipe", "swrast" };
+	const char *name = target_renderer_name(o->target);
+
+	for (size_t i = 0; i < sizeof software / sizeof *software; i++)
+		if (priority > 0 && strstr(name, software[i])) {
+			gr_info("ordinary priority, not %d: %s computes in the thread that answers",
+				priority, software[i]);
+			return;
+		}
+	priority_take(priority);
+}
+
 static int open_all(struct opened *o, const struct node_options *options)
 {
 	struct renderer_params renderer;
@@ -175,6 +194,8 @@ static int open_all(struct opened *o, const struct node_options *options)
 		r = warm_up(o);
 	if (r >= 0)
 		r = open_pictures(o, options, &renderer);
+	if (r >= 0)
+		take_priority(o, options->common.priority);
 	if (r >= 0)
 		r = privileges_drop(options->common.user, options->pictures);
 	if (r < 0)

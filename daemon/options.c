@@ -139,6 +139,7 @@ static const char *const target_words[] = { "layout", "headless", "window", "ful
 	{ "user", OPTION_TEXT, AT(type, common.user), "NAME", "user to become when started as root", 0, 0, NULL, NULL }, \
 	{ "report", OPTION_TEXT, AT(type, common.report), "FILE", "JSON figures written at the end", 0, 0, NULL, NULL }, \
 	{ "deadline-ms", OPTION_INT, AT(type, common.deadline_ms), "MS", "of the swap barrier, instead of the layout's", 1, 600000, NULL, NULL }, \
+	{ "priority", OPTION_INT, AT(type, common.priority), "N", "real-time priority, where the system allows it; 0 none [0]", 0, 99, NULL, NULL }, \
 	{ "log-level", OPTION_CHOICE, AT(type, common.log_level), "LEVEL", "error, warning, notice, info or debug [info]", 0, 0, level_words, NULL }
 
 static const struct option_spec master_specs[] = {

@@ -41,6 +41,7 @@ struct common_options {
 	const char *layout, *scene, *key, *user, *report;
 	int log_level; /* enum gr_log_level */
 	int deadline_ms; /* 0: the layout's */
+	int priority;    /* SCHED_RR, 0: ordinary */
 };
 
 struct master_options {
