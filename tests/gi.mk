@@ -23,7 +23,8 @@ tests_accuracy_test_holes_CFLAGS = $(TEST_CFLAGS) $(EPOXY_CFLAGS) $(OPENEXR_CFLA
 tests_accuracy_test_holes_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm
 
 # Cost and error of the lattice; takes a minute, so not a test.
-noinst_PROGRAMS += tools/bench-lattice
+# `grotto bench lattice` starts it.
+pkglibexec_PROGRAMS = tools/bench-lattice
 tools_bench_lattice_SOURCES = tools/bench_lattice.c $(GI_GL_TEST_SOURCES)
 tools_bench_lattice_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(EPOXY_CFLAGS)
 tools_bench_lattice_LDADD = $(RENDERER_LIBS)

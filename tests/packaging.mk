@@ -12,7 +12,7 @@ LINT_FLAGS = -std=gnu17 $(DEFS) $(DEFAULT_INCLUDES) $(AM_CPPFLAGS) \
 	$(CGLM_CFLAGS) $(LIBCONFIG_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS) \
 	$(SYSTEMD_CFLAGS) $(EPOXY_CFLAGS) $(GLFW_CFLAGS) $(ASSIMP_CFLAGS) \
 	$(OPENEXR_CFLAGS) $(PNG_CFLAGS) $(JPEG_CFLAGS) $(JSONC_CFLAGS) \
-	-DGROTTO_SBINDIR='"$(sbindir)"'
+	-DGROTTO_SBINDIR='"$(sbindir)"' -DGROTTO_PKGLIBEXECDIR='"$(pkglibexecdir)"'
 clang-tidy cppcheck: $(BUILT_SOURCES)
 	$(AM_V_GEN)$(top_srcdir)/scripts/lint $@ $(top_srcdir) $(LINT_FLAGS)
 .PHONY: clang-tidy cppcheck

@@ -9,13 +9,15 @@ tools_libgtools_a_SOURCES = \
 	tools/room.c tools/room.h \
 	tools/say.c tools/say.h \
 	tools/unfold.c tools/unfold.h
-tools_libgtools_a_CPPFLAGS = $(AM_CPPFLAGS) -DGROTTO_SBINDIR='"$(sbindir)"'
+tools_libgtools_a_CPPFLAGS = $(AM_CPPFLAGS) -DGROTTO_SBINDIR='"$(sbindir)"' \
+	-DGROTTO_PKGLIBEXECDIR='"$(pkglibexecdir)"'
 tools_libgtools_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(JSONC_CFLAGS)
 
 bin_PROGRAMS += tools/grotto
 tools_grotto_SOURCES = \
 	tools/command.h \
 	tools/grotto.c \
+	tools/bench.c \
 	tools/check.c \
 	tools/demo.c tools/demo.h \
 	tools/demo_plan.c tools/demo_plan.h \
@@ -25,6 +27,7 @@ tools_grotto_SOURCES = \
 	tools/key.c \
 	tools/render.c \
 	tools/status.c
-tools_grotto_CPPFLAGS = $(AM_CPPFLAGS) -DGROTTO_SBINDIR='"$(sbindir)"'
+tools_grotto_CPPFLAGS = $(AM_CPPFLAGS) -DGROTTO_SBINDIR='"$(sbindir)"' \
+	-DGROTTO_PKGLIBEXECDIR='"$(pkglibexecdir)"'
 tools_grotto_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(JSONC_CFLAGS)
 tools_grotto_LDADD = tools/libgtools.a $(RENDERER_LIBS) $(PROTOCOL_LIBS) $(CONFIG_LIBS) $(JSONC_LIBS)

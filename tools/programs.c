@@ -53,6 +53,13 @@ char *programs_find(const char *name)
 	return find(between, sizeof between / sizeof between[0], GROTTO_SBINDIR, name, X_OK);
 }
 
+char *programs_own(const char *name)
+{
+	static const char *const between[] = { "", "../libexec/grotto/" };
+
+	return find(between, sizeof between / sizeof between[0], GROTTO_PKGLIBEXECDIR, name, X_OK);
+}
+
 char *programs_data(const char *relative)
 {
 	/* An installed program has no source tree two folders up: share/grotto comes first. */

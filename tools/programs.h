@@ -12,6 +12,12 @@
  */
 char *programs_find(const char *name);
 /*
+ * Path of a program that is not for the command line ("bench-lattice"): beside
+ * this program, in ../libexec/grotto, in the configured pkglibexecdir. NULL when
+ * it is in none of them. Caller frees.
+ */
+char *programs_own(const char *name);
+/*
  * Path of a data file ("layouts/desk.cave"): in the source tree around the
  * build tree, in ../share/grotto, in the configured data directory. NULL when
  * it is in none of them. Caller frees.
