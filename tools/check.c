@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum file_kind { FILE_LAYOUT, FILE_SCENE, FILE_UNKNOWN };
 
@@ -125,13 +126,15 @@ static void check_scene(const char *path, struct gr_diag *diag)
 static bool check_file(const char *path)
 {
 	struct gr_diag diag = { 0 };
-	FILE *file = fopen(path, "re");
+	struct stat status;
 	bool right;
 
-	if (!file) {
+	/* Asked before it is opened: a FIFO would wait for a writer. */
+	if (stat(path, &status) < 0) {
 		gr_diag_add(&diag, GR_DIAG_ERROR, path, 0, NULL, "%s", strerror(errno));
+	} else if (!S_ISREG(status.st_mode)) {
+		gr_diag_add(&diag, GR_DIAG_ERROR, path, 0, NULL, "is not a regular file");
 	} else {
-		fclose(file);
 		switch (file_kind(path)) {
 		case FILE_LAYOUT: check_layout(path, &diag); break;
 		case FILE_SCENE: check_scene(path, &diag); break;
