@@ -27,6 +27,13 @@ tests_unit_test_import_SOURCES = tests/unit/test_import.c tests/unit/unit.h test
 tests_unit_test_import_CFLAGS = $(GL_TEST_CFLAGS) $(ASSIMP_CFLAGS) $(JPEG_CFLAGS)
 tests_unit_test_import_LDADD = $(GL_TEST_LIBS)
 
+EXTRA_DIST += tests/data/crash.fbx
+check_PROGRAMS += tests/unit/test_isolate
+TESTS += tests/unit/test_isolate
+tests_unit_test_isolate_SOURCES = tests/unit/test_isolate.c tests/unit/unit.h
+tests_unit_test_isolate_CFLAGS = $(GL_TEST_CFLAGS)
+tests_unit_test_isolate_LDADD = $(GL_TEST_LIBS)
+
 check_PROGRAMS += tests/unit/test_mesh
 TESTS += tests/unit/test_mesh
 tests_unit_test_mesh_SOURCES = tests/unit/test_mesh.c tests/unit/unit.h tests/unit/gl.h
@@ -34,7 +41,8 @@ tests_unit_test_mesh_CFLAGS = $(GL_TEST_CFLAGS)
 tests_unit_test_mesh_LDADD = $(GL_TEST_LIBS)
 
 if FUZZERS
-noinst_PROGRAMS += tests/fuzz/fuzz_exr tests/fuzz/fuzz_glb tests/fuzz/fuzz_texture
+noinst_PROGRAMS += tests/fuzz/fuzz_exr tests/fuzz/fuzz_glb tests/fuzz/fuzz_scene_block \
+	tests/fuzz/fuzz_texture
 endif
 tests_fuzz_fuzz_exr_SOURCES = tests/fuzz/fuzz_exr.c
 tests_fuzz_fuzz_exr_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS)
@@ -44,6 +52,10 @@ tests_fuzz_fuzz_glb_SOURCES = tests/fuzz/fuzz_glb.c
 tests_fuzz_fuzz_glb_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(ASSIMP_CFLAGS)
 tests_fuzz_fuzz_glb_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
 tests_fuzz_fuzz_glb_LDADD = $(RENDERER_LIBS)
+tests_fuzz_fuzz_scene_block_SOURCES = tests/fuzz/fuzz_scene_block.c
+tests_fuzz_fuzz_scene_block_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS)
+tests_fuzz_fuzz_scene_block_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_scene_block_LDADD = $(RENDERER_LIBS)
 tests_fuzz_fuzz_texture_SOURCES = tests/fuzz/fuzz_texture.c
 tests_fuzz_fuzz_texture_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(ASSIMP_CFLAGS)
 tests_fuzz_fuzz_texture_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
@@ -52,6 +64,7 @@ tests_fuzz_fuzz_texture_LDADD = $(RENDERER_LIBS)
 # What the fuzzers of renderer/scene and renderer/image start from.
 EXTRA_DIST += \
 	tests/fuzz/corpus/exr/zip-float.exr \
+	tests/fuzz/corpus/glb/image-type.glb \
 	tests/fuzz/corpus/glb/textured.glb \
 	tests/fuzz/corpus/texture/baseline.jpg \
 	tests/fuzz/corpus/texture/progressive.jpg \

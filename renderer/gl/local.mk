@@ -8,9 +8,12 @@ RENDERER_SOURCES += \
 	renderer/image/exr_private.h renderer/image/exr_read.c renderer/image/exr_write.c \
 	renderer/image/image.c renderer/image/image.h renderer/image/png.c \
 	renderer/image/read_file.c renderer/image/read_file.h \
-	renderer/scene/gltf.c renderer/scene/import.c renderer/scene/import.h \
+	renderer/scene/gltf.c renderer/scene/gltf.h renderer/scene/gltf_pack.c \
+	renderer/scene/gltf_schema.c renderer/scene/import.c renderer/scene/import.h \
 	renderer/scene/import_geometry.c renderer/scene/import_image.c \
-	renderer/scene/import_material.c renderer/scene/scene.c renderer/scene/scene.h \
+	renderer/scene/import_material.c renderer/scene/isolate.c renderer/scene/isolate.h \
+	renderer/scene/scene.c renderer/scene/scene.h \
+	renderer/scene/scene_block.c renderer/scene/scene_block.h \
 	renderer/scene/scene_import.c renderer/scene/texture.c
 
 SHADERS += renderer/shaders/material.glsl

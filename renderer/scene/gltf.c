@@ -1,32 +1,23 @@
 /*
- * What a glTF 2.0 file says beside assimp. assimp 5.2 trusts node hierarchies
- * to end, and does not know KHR_materials_emissive_strength and _specular;
- * both are read here from the file's own JSON.
+ * The check of a glTF 2.0 file, and what it says beside assimp. assimp 5.2 takes
+ * strings, lengths and references on trust and node hierarchies to end, and does
+ * not know KHR_materials_emissive_strength and _specular: they are read here.
  */
+#include "renderer/scene/gltf.h"
 #include "renderer/scene/import.h"
 
 #include "base/cursor.h"
 #include "base/result.h"
 
-#include <errno.h>
 #include <json-c/json.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
 
 #define GLB_MAGIC 0x46546c67u
 #define GLB_JSON 0x4e4f534au
 #define GLB_BIN 0x004e4942u
-
-struct gltf {
-	const char *path;
-	struct gr_diag *diag;
-	struct json_object *root;
-	size_t binary_len; /* of the GLB's BIN chunk, 0 without one */
-	size_t triangles;
-};
 
 bool gltf_is_name(const char *name)
 {
@@ -35,14 +26,13 @@ bool gltf_is_name(const char *name)
 	return dot && (strcasecmp(dot, ".gltf") == 0 || strcasecmp(dot, ".glb") == 0);
 }
 
-static int fault(const struct gltf *g, const char *key, const char *text)
+int gltf_fault(const struct gltf *g, const char *key, const char *text)
 {
 	gr_diag_add(g->diag, GR_DIAG_ERROR, g->path, 0, key, "%s", text);
 	return GR_ERR_CONFIG;
 }
 
-/* An array of the root, NULL when absent; *count 0 then. */
-static struct json_object *list(const struct gltf *g, const char *key, size_t *count)
+struct json_object *gltf_list(const struct gltf *g, const char *key, size_t *count)
 {
 	struct json_object *array = NULL;
 
@@ -54,7 +44,7 @@ static struct json_object *list(const struct gltf *g, const char *key, size_t *c
 	return array;
 }
 
-static struct json_object *member(struct json_object *object, const char *key)
+struct json_object *gltf_member(struct json_object *object, const char *key)
 {
 	struct json_object *value = NULL;
 
@@ -64,10 +54,9 @@ static struct json_object *member(struct json_object *object, const char *key)
 	return value;
 }
 
-/* A whole number of at least 0, `missing` when absent, -1 when it is something else. */
-static int64_t whole(struct json_object *object, const char *key, int64_t missing)
+int64_t gltf_whole(struct json_object *object, const char *key, int64_t missing)
 {
-	struct json_object *value = member(object, key);
+	struct json_object *value = gltf_member(object, key);
 	double number;
 
 	if (!value)
@@ -77,13 +66,6 @@ static int64_t whole(struct json_object *object, const char *key, int64_t missin
 		return -1;
 	number = json_object_get_double(value);
 	return number >= 0 && number <= 0x1p53 && number == floor(number) ? (int64_t)number : -1;
-}
-
-static bool is_index(struct json_object *object, const char *key, size_t count)
-{
-	int64_t value = whole(object, key, 0);
-
-	return value >= 0 && (!member(object, key) || (size_t)value < count);
 }
 
 /* Finds the JSON in a GLB; in a .gltf it is the whole file. */
@@ -103,9 +85,9 @@ static int find_json(struct gltf *g, const uint8_t *bytes, size_t len, const cha
 	chunk_len = gr_read_u32(&r);
 	chunk = gr_read_u32(&r);
 	if (!r.ok)
-		return fault(g, NULL, "cut off: a GLB header has 20 bytes");
+		return gltf_fault(g, NULL, "cut off: a GLB header has 20 bytes");
 	if (version != 2)
-		return fault(g, NULL, "GLB of another version; glTF 2.0 is read");
+		return gltf_fault(g, NULL, "GLB of another version; glTF 2.0 is read");
 	if (total > len) {
 		gr_diag_add(g->diag, GR_DIAG_ERROR, g->path, 0, NULL,
 			    "cut off: its header says %u bytes, the file has %zu", total, len);
@@ -114,13 +96,14 @@ static int find_json(struct gltf *g, const uint8_t *bytes, size_t len, const cha
 	*json = (const char *)gr_read_bytes(&r, chunk_len);
 	*json_len = chunk_len;
 	if (!*json || chunk != GLB_JSON)
-		return fault(g, NULL, "the GLB's first chunk is not whole JSON");
+		return gltf_fault(g, NULL, "the GLB's first chunk is not whole JSON");
 	if (gr_reader_left(&r) == 0)
 		return GR_OK;
 	chunk_len = gr_read_u32(&r);
 	chunk = gr_read_u32(&r);
-	if (!gr_read_bytes(&r, chunk_len))
-		return fault(g, NULL, "cut off: the GLB's second chunk is not whole");
+	g->binary = gr_read_bytes(&r, chunk_len);
+	if (!g->binary)
+		return gltf_fault(g, NULL, "cut off: the GLB's second chunk is not whole");
 	g->binary_len = chunk == GLB_BIN ? chunk_len : 0;
 	return GR_OK;
 }
@@ -131,6 +114,7 @@ static int parse(struct gltf *g, const char *json, size_t len)
 
 	if (!tokener)
 		return GR_ERR_NOMEM;
+	json_tokener_set_flags(tokener, JSON_TOKENER_STRICT);
 	g->root = json_tokener_parse_ex(tokener, json, (int)len);
 	if (!g->root) {
 		gr_diag_add(g->diag, GR_DIAG_ERROR, g->path, 0, NULL,
@@ -143,7 +127,7 @@ static int parse(struct gltf *g, const char *json, size_t len)
 	}
 	json_tokener_free(tokener);
 	if (!json_object_is_type(g->root, json_type_object))
-		return fault(g, NULL, "not a glTF file: no JSON object");
+		return gltf_fault(g, NULL, "not a glTF file: no JSON object");
 	return GR_OK;
 }
 
@@ -155,7 +139,7 @@ static int check_extensions(const struct gltf *g)
 		"KHR_lights_punctual",    "KHR_materials_unlit",
 	};
 	size_t count;
-	struct json_object *required = list(g, "extensionsRequired", &count);
+	struct json_object *required = gltf_list(g, "extensionsRequired", &count);
 	int result = GR_OK;
 
 	for (size_t i = 0; i < count; i++) {
@@ -171,67 +155,6 @@ static int check_extensions(const struct gltf *g)
 		}
 	}
 	return result;
-}
-
-/* assimp's own words do not name the file. */
-static int check_companion(const struct gltf *g, const char *uri, size_t len)
-{
-	struct stat status;
-	char *path;
-	int result = GR_OK;
-
-	if (strncmp(uri, "data:", 5) == 0)
-		return GR_OK;
-	path = import_beside(g->path, uri);
-	if (!path)
-		return GR_ERR_NOMEM;
-	if (stat(path, &status) != 0) {
-		gr_diag_add(g->diag, GR_DIAG_ERROR, g->path, 0, "buffers", "%s: %s", path,
-			    strerror(errno));
-		result = GR_ERR_CONFIG;
-	} else if (!S_ISREG(status.st_mode) || (uint64_t)status.st_size < len) {
-		gr_diag_add(g->diag, GR_DIAG_ERROR, g->path, 0, "buffers",
-			    "%s is cut off: %zu bytes are needed, it has %lld", path, len,
-			    (long long)status.st_size);
-		result = GR_ERR_CONFIG;
-	}
-	free(path);
-	return result;
-}
-
-static int check_buffers(const struct gltf *g)
-{
-	size_t buffers, views;
-	struct json_object *buffer_list = list(g, "buffers", &buffers);
-	struct json_object *view_list = list(g, "bufferViews", &views);
-
-	for (size_t i = 0; i < buffers; i++) {
-		struct json_object *buffer = json_object_array_get_idx(buffer_list, i), *uri;
-		int64_t len = whole(buffer, "byteLength", -1);
-		int result;
-
-		if (len < 0 || (uint64_t)len > IMPORT_MAX_FILE)
-			return fault(g, "buffers", "byteLength is missing or out of range");
-		uri = member(buffer, "uri");
-		if (!uri && (uint64_t)len > g->binary_len)
-			return fault(g, "buffers", "the GLB's binary chunk is shorter than its byteLength");
-		result = uri ? check_companion(g, json_object_get_string(uri), (size_t)len) : GR_OK;
-		if (result != GR_OK)
-			return result;
-	}
-	for (size_t i = 0; i < views; i++) {
-		struct json_object *view = json_object_array_get_idx(view_list, i);
-		int64_t buffer = whole(view, "buffer", -1);
-		int64_t at = whole(view, "byteOffset", 0);
-		int64_t len = whole(view, "byteLength", -1);
-
-		if (buffer < 0 || (size_t)buffer >= buffers || at < 0 || len < 1)
-			return fault(g, "bufferViews", "buffer, byteOffset or byteLength is wrong");
-		if (at + len > whole(json_object_array_get_idx(buffer_list, (size_t)buffer),
-				     "byteLength", 0))
-			return fault(g, "bufferViews", "a view reaches beyond its buffer");
-	}
-	return GR_OK;
 }
 
 static int64_t component_size(int64_t type)
@@ -260,7 +183,7 @@ static int64_t component_count(struct json_object *accessor)
 		{ "SCALAR", 1 }, { "VEC2", 2 }, { "VEC3", 3 }, { "VEC4", 4 },
 		{ "MAT2", 4 },   { "MAT3", 9 }, { "MAT4", 16 },
 	};
-	struct json_object *type = member(accessor, "type");
+	struct json_object *type = gltf_member(accessor, "type");
 	const char *name = type ? json_object_get_string(type) : NULL;
 
 	for (size_t i = 0; i < sizeof types / sizeof types[0] && name; i++) {
@@ -273,48 +196,56 @@ static int64_t component_count(struct json_object *accessor)
 static int check_accessors(const struct gltf *g)
 {
 	size_t accessors, views;
-	struct json_object *accessor_list = list(g, "accessors", &accessors);
-	struct json_object *view_list = list(g, "bufferViews", &views);
+	struct json_object *accessor_list = gltf_list(g, "accessors", &accessors);
+	struct json_object *view_list = gltf_list(g, "bufferViews", &views);
 
 	for (size_t i = 0; i < accessors; i++) {
 		struct json_object *accessor = json_object_array_get_idx(accessor_list, i);
-		int64_t count = whole(accessor, "count", -1);
-		int64_t at = whole(accessor, "byteOffset", 0);
-		int64_t item = component_size(whole(accessor, "componentType", -1)) *
+		int64_t count = gltf_whole(accessor, "count", -1);
+		int64_t at = gltf_whole(accessor, "byteOffset", 0);
+		int64_t item = component_size(gltf_whole(accessor, "componentType", -1)) *
 			       component_count(accessor);
-		int64_t view_index = whole(accessor, "bufferView", -1);
+		int64_t view_index = gltf_whole(accessor, "bufferView", -1);
 		struct json_object *view;
 		int64_t stride;
 
 		if (count < 1 || (uint64_t)count > IMPORT_MAX_INDICES || at < 0 || item < 1)
-			return fault(g, "accessors", "count, type or byteOffset is wrong or too large");
-		if (member(accessor, "sparse"))
-			return fault(g, "accessors", "sparse accessors are not supported; export without");
+			return gltf_fault(g, "accessors", "count, type or byteOffset is wrong or too large");
+		if (gltf_member(accessor, "sparse"))
+			return gltf_fault(g, "accessors", "sparse accessors are not supported; export without");
 		if (view_index < 0 || (size_t)view_index >= views)
-			return fault(g, "accessors", "bufferView is missing or does not exist");
+			return gltf_fault(g, "accessors", "bufferView is missing or does not exist");
 		view = json_object_array_get_idx(view_list, (size_t)view_index);
-		stride = whole(view, "byteStride", item);
+		stride = gltf_whole(view, "byteStride", item);
 		if (stride < item || stride > 252 + item)
-			return fault(g, "bufferViews", "byteStride is smaller than an element, or too large");
-		if (at + (count - 1) * stride + item > whole(view, "byteLength", 0))
-			return fault(g, "accessors", "an accessor reaches beyond its view");
+			return gltf_fault(g, "bufferViews", "byteStride is smaller than an element, or too large");
+		if (at + (count - 1) * stride + item > gltf_whole(view, "byteLength", 0))
+			return gltf_fault(g, "accessors", "an accessor reaches beyond its view");
 	}
 	return GR_OK;
 }
 
-static bool attribute_ok(struct json_object *accessors, size_t count, struct json_object *attributes,
+/* Floats alone: assimp copies other components as if they were floats. */
+static bool attribute_ok(struct json_object *accessors, struct json_object *attributes,
 			 const char *name, const char *type, int64_t vertices)
 {
 	struct json_object *accessor, *given;
 
-	if (!member(attributes, name))
+	if (!gltf_member(attributes, name))
 		return true;
-	if (!is_index(attributes, name, count))
-		return false;
-	accessor = json_object_array_get_idx(accessors, (size_t)whole(attributes, name, 0));
-	given = member(accessor, "type");
+	accessor = json_object_array_get_idx(accessors, (size_t)gltf_whole(attributes, name, 0));
+	given = gltf_member(accessor, "type");
 	return given && strcmp(json_object_get_string(given), type) == 0 &&
-	       whole(accessor, "count", -1) == vertices;
+	       gltf_whole(accessor, "componentType", -1) == 5126 &&
+	       gltf_whole(accessor, "count", -1) == vertices;
+}
+
+/* Of unsigned numbers, one a corner. */
+static bool indices_ok(struct json_object *accessor)
+{
+	int64_t type = gltf_whole(accessor, "componentType", -1);
+
+	return component_count(accessor) == 1 && (type == 5121 || type == 5123 || type == 5125);
 }
 
 /* 4 is a list, 5 a strip, 6 a fan of triangles; points and lines have none. */
@@ -326,50 +257,48 @@ static size_t triangle_count(int64_t mode, int64_t corners)
 }
 
 static int check_primitive(struct gltf *g, struct json_object *primitive,
-			   struct json_object *accessors, size_t count, size_t materials)
+			   struct json_object *accessors)
 {
-	struct json_object *attributes = member(primitive, "attributes");
-	int64_t position = whole(attributes, "POSITION", -1);
-	int64_t vertices;
-	struct json_object *accessor;
+	/* points, lines, loop, strip; triangles, strip, fan: assimp counts on one of them */
+	static const int64_t least[] = { 1, 2, 2, 2, 3, 3, 3 };
+	struct json_object *attributes = gltf_member(primitive, "attributes");
+	int64_t mode = gltf_whole(primitive, "mode", 4), corners;
+	struct json_object *accessor = json_object_array_get_idx(
+		accessors, (size_t)gltf_whole(attributes, "POSITION", 0));
+	int64_t vertices = gltf_whole(accessor, "count", 0);
 
-	if (position < 0 || (size_t)position >= count)
-		return fault(g, "meshes", "a primitive has no POSITION");
-	accessor = json_object_array_get_idx(accessors, (size_t)position);
-	vertices = whole(accessor, "count", -1);
-	if (whole(accessor, "componentType", -1) != 5126)
-		return fault(g, "meshes", "POSITION must be of floats");
-	if (!attribute_ok(accessors, count, attributes, "POSITION", "VEC3", vertices) ||
-	    !attribute_ok(accessors, count, attributes, "NORMAL", "VEC3", vertices) ||
-	    !attribute_ok(accessors, count, attributes, "TANGENT", "VEC4", vertices) ||
-	    !attribute_ok(accessors, count, attributes, "TEXCOORD_0", "VEC2", vertices) ||
-	    !attribute_ok(accessors, count, attributes, "TEXCOORD_1", "VEC2", vertices))
-		return fault(g, "meshes", "an attribute is of another type or length than POSITION");
-	if (!is_index(primitive, "indices", count) || !is_index(primitive, "material", materials))
-		return fault(g, "meshes", "indices or material do not exist");
-	if (member(primitive, "indices"))
-		accessor = json_object_array_get_idx(accessors, (size_t)whole(primitive, "indices", 0));
-	g->triangles += triangle_count(whole(primitive, "mode", 4), whole(accessor, "count", 0));
+	if (!attribute_ok(accessors, attributes, "POSITION", "VEC3", vertices) ||
+	    !attribute_ok(accessors, attributes, "NORMAL", "VEC3", vertices) ||
+	    !attribute_ok(accessors, attributes, "TEXCOORD_0", "VEC2", vertices))
+		return gltf_fault(g, "meshes", "POSITION, NORMAL and TEXCOORD_0 must be vectors of "
+					       "floats, of 3, 3 and 2, as many of each");
+	if (gltf_member(primitive, "indices")) {
+		accessor = json_object_array_get_idx(accessors,
+						     (size_t)gltf_whole(primitive, "indices", 0));
+		if (!indices_ok(accessor))
+			return gltf_fault(g, "meshes", "indices must be unsigned numbers");
+	}
+	corners = gltf_whole(accessor, "count", 0);
+	if (corners < least[mode])
+		return gltf_fault(g, "meshes", "a primitive has too few corners for its mode");
+	g->triangles += triangle_count(mode, corners);
 	return GR_OK;
 }
 
 static int check_meshes(struct gltf *g)
 {
-	size_t meshes, accessors, materials;
-	struct json_object *mesh_list = list(g, "meshes", &meshes);
-	struct json_object *accessor_list = list(g, "accessors", &accessors);
+	size_t meshes, accessors;
+	struct json_object *mesh_list = gltf_list(g, "meshes", &meshes);
+	struct json_object *accessor_list = gltf_list(g, "accessors", &accessors);
 	int result = GR_OK;
 
-	list(g, "materials", &materials);
 	for (size_t i = 0; i < meshes && result == GR_OK; i++) {
 		struct json_object *primitives =
-			member(json_object_array_get_idx(mesh_list, i), "primitives");
+			gltf_member(json_object_array_get_idx(mesh_list, i), "primitives");
 
-		if (!json_object_is_type(primitives, json_type_array))
-			return fault(g, "meshes", "a mesh has no primitives");
 		for (size_t k = 0; k < json_object_array_length(primitives) && result == GR_OK; k++)
 			result = check_primitive(g, json_object_array_get_idx(primitives, k),
-						 accessor_list, accessors, materials);
+						 accessor_list);
 	}
 	return result;
 }
@@ -385,7 +314,52 @@ static int check_parents(const struct gltf *g, const int64_t *parents, size_t no
 
 		for (int64_t at = parents[i]; at >= 0; at = parents[at]) {
 			if (++depth > IMPORT_MAX_DEPTH)
-				return fault(g, "nodes", "nodes contain themselves, or are nested too deeply");
+				return gltf_fault(g, "nodes", "nodes contain themselves, or are nested too deeply");
+		}
+	}
+	return GR_OK;
+}
+
+static int read_parents(const struct gltf *g, int64_t *parents)
+{
+	size_t nodes;
+	struct json_object *node_list = gltf_list(g, "nodes", &nodes);
+
+	for (size_t i = 0; i < nodes; i++)
+		parents[i] = -1;
+	for (size_t i = 0; i < nodes; i++) {
+		struct json_object *children =
+			gltf_member(json_object_array_get_idx(node_list, i), "children");
+		size_t count = children ? json_object_array_length(children) : 0;
+
+		for (size_t k = 0; k < count; k++) {
+			int64_t child = json_object_get_int64(json_object_array_get_idx(children, k));
+
+			if (parents[child] >= 0 || (size_t)child == i)
+				return gltf_fault(g, "nodes", "a node has two parents, or is its own");
+			parents[child] = (int64_t)i;
+		}
+	}
+	return GR_OK;
+}
+
+/* Scenes begin at roots and name each once: else a short file unfolds into a huge tree. */
+static int check_scenes(const struct gltf *g, int64_t *parents)
+{
+	size_t scenes;
+	struct json_object *scene_list = gltf_list(g, "scenes", &scenes);
+
+	for (size_t i = 0; i < scenes; i++) {
+		struct json_object *nodes =
+			gltf_member(json_object_array_get_idx(scene_list, i), "nodes");
+
+		for (size_t k = 0; k < json_object_array_length(nodes); k++) {
+			int64_t node = json_object_get_int64(json_object_array_get_idx(nodes, k));
+
+			if (parents[node] >= 0 || parents[node] == -2 - (int64_t)i)
+				return gltf_fault(g, "scenes",
+						  "a scene's node is below another, or named twice");
+			parents[node] = -2 - (int64_t)i; /* a mark; still no parent */
 		}
 	}
 	return GR_OK;
@@ -393,48 +367,26 @@ static int check_parents(const struct gltf *g, const int64_t *parents, size_t no
 
 static int check_nodes(const struct gltf *g)
 {
-	size_t nodes, meshes;
-	struct json_object *node_list = list(g, "nodes", &nodes);
+	size_t nodes;
 	int64_t *parents;
-	int result = GR_OK;
+	int result;
 
-	list(g, "meshes", &meshes);
-	if (nodes > IMPORT_MAX_NODES)
-		return fault(g, "nodes", "too many nodes");
-	parents = malloc((nodes ? nodes : 1) * sizeof *parents);
+	gltf_list(g, "nodes", &nodes);
+	parents = malloc((nodes + 1) * sizeof *parents);
 	if (!parents)
 		return GR_ERR_NOMEM;
-	for (size_t i = 0; i < nodes; i++)
-		parents[i] = -1;
-	for (size_t i = 0; i < nodes && result == GR_OK; i++) {
-		struct json_object *node = json_object_array_get_idx(node_list, i);
-		struct json_object *children = member(node, "children");
-		size_t count = json_object_is_type(children, json_type_array)
-				       ? json_object_array_length(children)
-				       : 0;
-
-		if (!is_index(node, "mesh", meshes))
-			result = fault(g, "nodes", "a node's mesh does not exist");
-		for (size_t k = 0; k < count && result == GR_OK; k++) {
-			int64_t child = json_object_get_int64(json_object_array_get_idx(children, k));
-
-			if (child < 0 || (size_t)child >= nodes)
-				result = fault(g, "nodes", "a node's child does not exist");
-			else if (parents[child] >= 0 || (size_t)child == i)
-				result = fault(g, "nodes", "a node has two parents, or is its own");
-			else
-				parents[child] = (int64_t)i;
-		}
-	}
+	result = read_parents(g, parents);
 	if (result == GR_OK)
 		result = check_parents(g, parents, nodes);
+	if (result == GR_OK)
+		result = check_scenes(g, parents);
 	free(parents);
 	return result;
 }
 
 static float number(struct json_object *object, const char *key, float missing)
 {
-	struct json_object *value = member(object, key);
+	struct json_object *value = gltf_member(object, key);
 
 	if (!value)
 		return missing;
@@ -447,13 +399,13 @@ static float number(struct json_object *object, const char *key, float missing)
 
 static void read_material(struct json_object *material, struct gltf_material *out)
 {
-	struct json_object *extensions = member(material, "extensions");
-	struct json_object *specular = member(extensions, "KHR_materials_specular");
-	struct json_object *color = member(specular, "specularColorFactor");
+	struct json_object *extensions = gltf_member(material, "extensions");
+	struct json_object *specular = gltf_member(extensions, "KHR_materials_specular");
+	struct json_object *color = gltf_member(specular, "specularColorFactor");
 
-	out->emissive_strength = number(member(extensions, "KHR_materials_emissive_strength"),
+	out->emissive_strength = number(gltf_member(extensions, "KHR_materials_emissive_strength"),
 					"emissiveStrength", 1.0f);
-	out->ior = number(member(extensions, "KHR_materials_ior"), "ior", 1.5f);
+	out->ior = number(gltf_member(extensions, "KHR_materials_ior"), "ior", 1.5f);
 	out->specular_factor = number(specular, "specularFactor", 1.0f);
 	for (size_t i = 0; i < 3; i++) {
 		out->specular_color[i] = 1.0f;
@@ -467,10 +419,10 @@ static void read_material(struct json_object *material, struct gltf_material *ou
 static int read_materials(const struct gltf *g, struct gltf_extra *out)
 {
 	size_t count;
-	struct json_object *materials = list(g, "materials", &count);
+	struct json_object *materials = gltf_list(g, "materials", &count);
 
 	if (count > IMPORT_MAX_MATERIALS)
-		return fault(g, "materials", "too many materials");
+		return gltf_fault(g, "materials", "too many materials");
 	if (count == 0)
 		return GR_OK;
 	out->materials = calloc(count, sizeof out->materials[0]);
@@ -497,7 +449,9 @@ int gltf_read(const uint8_t *bytes, size_t len, const char *path, struct gltf_ex
 	if (result == GR_OK)
 		result = check_extensions(&g);
 	if (result == GR_OK)
-		result = check_buffers(&g);
+		result = read_materials(&g, out); /* before their extensions are gone */
+	if (result == GR_OK)
+		result = gltf_schema(&g);
 	if (result == GR_OK)
 		result = check_accessors(&g);
 	if (result == GR_OK)
@@ -505,7 +459,7 @@ int gltf_read(const uint8_t *bytes, size_t len, const char *path, struct gltf_ex
 	if (result == GR_OK)
 		result = check_nodes(&g);
 	if (result == GR_OK)
-		result = read_materials(&g, out);
+		result = gltf_pack(&g, &out->glb, &out->glb_len);
 	out->triangles = g.triangles;
 	if (g.root)
 		json_object_put(g.root);
@@ -515,5 +469,6 @@ int gltf_read(const uint8_t *bytes, size_t len, const char *path, struct gltf_ex
 void gltf_finish(struct gltf_extra *extra)
 {
 	free(extra->materials);
+	free(extra->glb);
 	memset(extra, 0, sizeof *extra);
 }

@@ -1,6 +1,6 @@
 /*
  * Inside of renderer/scene: from a model's bytes to a struct scene. Split into
- * what a glTF file says beside assimp (gltf.c), materials (import_material.c),
+ * the check of glTF and what it says beside assimp (gltf*.c), materials (import_material.c),
  * textures (texture.c) and geometry (import_geometry.c).
  */
 #ifndef GROTTO_RENDERER_SCENE_IMPORT_H
@@ -30,6 +30,11 @@
 /* A non-metal at least this rough is pure Lambert. */
 #define IMPORT_LAMBERT_ROUGHNESS 0.999f
 
+/* What one import may take; it runs in a child process with these limits. */
+#define IMPORT_CPU_S 60
+#define IMPORT_WALL_MS 90000 /* below the services' TimeoutStartSec */
+#define IMPORT_MEMORY ((size_t)12 << 30)
+
 struct import_options {
 	float scale;          /* metres per unit of the model */
 	float emission_scale; /* W/(m^2 sr) of emission 1 */
@@ -38,15 +43,22 @@ struct import_options {
 /* Diffuse reflectance of a glTF mesh without a material. */
 #define IMPORT_DEFAULT_REFLECTANCE 0.5f
 
-/* As scene_import, without a scene file. */
+/*
+ * As scene_import, without a scene file. In a child process (isolate.h): a file
+ * that makes assimp crash or run on for ever is refused as any other bad one.
+ */
 int import_model(const char *path, const struct import_options *options, struct scene **out,
 		 struct gr_diag *diag);
 /*
  * The same from bytes; `name` gives the format by its ending and the folder of
- * external textures. Buffers outside the bytes are not found.
+ * external textures.
  */
 int import_bytes(const uint8_t *bytes, size_t len, const char *name,
 		 const struct import_options *options, struct scene **out, struct gr_diag *diag);
+/* The same without a child, for fuzzing; the scene has no hash. */
+int import_bytes_here(const uint8_t *bytes, size_t len, const char *name,
+		      const struct import_options *options, struct scene **out,
+		      struct gr_diag *diag);
 
 /* The glTF material properties that assimp 5.2 does not hand on. */
 struct gltf_material {
@@ -60,13 +72,17 @@ struct gltf_extra {
 	struct gltf_material *materials; /* in the file's order, which is assimp's */
 	size_t material_count;
 	size_t triangles; /* that the primitives promise, each mesh once */
+	uint8_t *glb;     /* the same model, of nothing but what was checked: for assimp */
+	size_t glb_len;
 };
 
 /* Whether a name ends in .gltf or .glb. */
 bool gltf_is_name(const char *name);
 /*
- * Checks what assimp takes on trust (lengths, references, cycles, extensions
- * that are required) and reads the extra properties. Faults go to diag.
+ * Checks what assimp takes on trust (types, lengths, references, cycles,
+ * extensions that are required), reads the extra properties and makes a GLB of
+ * what is used: one buffer, with companions and data URIs in it. Faults go to
+ * diag.
  */
 int gltf_read(const uint8_t *bytes, size_t len, const char *path, struct gltf_extra *out,
 	      struct gr_diag *diag);

@@ -9,7 +9,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	struct gr_diag diag = { 0 };
 	struct scene *scene;
 
-	if (import_bytes(data, size, "fuzz.glb", &options, &scene, &diag) == 0)
+	if (import_bytes_here(data, size, "fuzz.glb", &options, &scene, &diag) == 0)
 		scene_destroy(&scene);
 	gr_diag_finish(&diag);
 	return 0;

@@ -8,6 +8,7 @@
 #include "tests/unit/glb.h"
 #include "tests/unit/shared.h"
 
+#include <assimp/version.h>
 #include <math.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -257,7 +258,7 @@ static void test_refused(void **state)
 		const char *node, *material, *more, *why;
 	} bad[] = {
 		{ ",\"children\":[0]", "", "", "two parents" },
-		{ ",\"children\":[7]", "", "", "child" },
+		{ ",\"children\":[7]", "", "", "nodes[0].children[0]" },
 		{ ",\"mesh\":1", "", "", "mesh" },
 		{ "", ",\"emissiveFactor\":[1,1,1],\"extensions\":{\"KHR_materials_emissive_strength\":"
 		      "{\"emissiveStrength\":1e39}}", "", "no finite" },
@@ -271,6 +272,30 @@ static void test_refused(void **state)
 		{ "", ",\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}",
 		  ",\"textures\":[{\"source\":0}],\"images\":[{\"bufferView\":0,"
 		  "\"mimeType\":\"image/png\"}]", "neither PNG nor JPEG" },
+		/* This one alone crashed assimp 5.2.5. */
+		{ "", ",\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}",
+		  ",\"textures\":[{\"source\":0}],\"images\":[{\"bufferView\":0,"
+		  "\"mimeType\":\"image-png\"}]", "images[0].mimeType" },
+		{ "", "", ",\"textures\":[{\"source\":0}]", "textures[0].source" },
+		{ "", "", ",\"textures\":[{}]", "textures[0].source: is missing" },
+		{ "", "", ",\"textures\":{}", "textures: must be a list" },
+		{ "", "", ",\"images\":[{\"uri\":7}]", "images[0].uri: must be a string" },
+		{ "", "", ",\"images\":[{\"uri\":\"data:image/png;base64,%%\"}]", "base64" },
+		{ "", "", ",\"images\":[{}]", "either a uri or a bufferView" },
+		{ "", "", ",\"images\":[null]", "images[0]: must be an object" },
+		{ ",\"scale\":[1,2]", "", "", "nodes[0].scale: has another number" },
+		{ ",\"scale\":[1,2,\"x\"]", "", "", "nodes[0].scale[2]: must be a number" },
+		{ ",\"scale\":[1,2,1e39]", "", "", "nodes[0].scale[2]: must be a number" },
+		{ ",\"children\":\"x\"", "", "", "nodes[0].children: must be a list" },
+		{ ",\"children\":[0.5]", "", "", "nodes[0].children[0]: must be a whole" },
+		{ ",\"mesh\":null", "", "", "nodes[0].mesh: must be a whole" },
+		{ "", ",\"doubleSided\":1", "", "materials[0].doubleSided" },
+		{ "", ",\"alphaMode\":\"GLASS\"", "", "materials[0].alphaMode" },
+		{ "", ",\"emissiveTexture\":{\"index\":0}", "", "the file has no textures" },
+		{ "", "", ",\"scene\":1", "scene: must be a whole number from 0 to 0" },
+		{ "", "", ",\"scenes\":[]", "scene" },
+		{ "", "", ",\"scenes\":[{\"nodes\":[0,0]}]", "named twice" },
+		{ "", "", ",\"asset\":{\"version\":\"1.0\"}", "glTF 2.0 is read" },
 	};
 	static const struct glb_quad quad = GLB_QUAD;
 	struct scene *scene;
@@ -283,7 +308,7 @@ static void test_refused(void **state)
 		if (!strstr(why, bad[i].why))
 			print_message("case %zu, wanted %s: %s", i, bad[i].why, why);
 		assert_non_null(strstr(why, bad[i].why));
-		assert_non_null(strstr(why, bad[i].why[0] == 'g' ? "gone.png" : "quad.glb"));
+		assert_non_null(strstr(why, strcmp(bad[i].why, "gone.png") == 0 ? "gone.png" : "quad.glb"));
 	}
 }
 
@@ -559,6 +584,31 @@ static void test_collada(void **state)
 	assert_non_null(strstr(why, "No such file"));
 }
 
+/* assimp 5.2.5 follows a null pointer there; it does so in a child, and this process goes on. */
+static void test_crash(void **state)
+{
+	const char *source = getenv("srcdir") ? getenv("srcdir") : ".";
+	struct scene *scene;
+	char path[512], why[1024];
+
+	(void)state;
+	snprintf(path, sizeof path, "%s/tests/data/crash.fbx", source);
+	if (import_path(path, &scene, why, sizeof why) == GR_OK) {
+		scene_destroy(&scene);
+		printf("# this assimp reads crash.fbx\n");
+		return;
+	}
+	printf("# %s", why);
+	assert_non_null(strstr(why, "crash.fbx"));
+	if (aiGetVersionMajor() == 5 && aiGetVersionMinor() == 2)
+		assert_non_null(strstr(why, "crash (signal"));
+	assert_int_equal(import_path("model.blend", &scene, why, sizeof why), GR_ERR_CONFIG);
+	assert_non_null(strstr(why, "No such file"));
+	write_file("a.bin", "glTF", 4);
+	assert_int_equal(import_path(inside("a.bin"), &scene, why, sizeof why), GR_ERR_CONFIG);
+	assert_non_null(strstr(why, "of no known form"));
+}
+
 static void test_hash(void **state)
 {
 	struct scene *a = good_quad("", "", ""), *b = good_quad("", "", "");
@@ -657,7 +707,8 @@ int main(void)
 		cmocka_unit_test(test_refused),    cmocka_unit_test(test_cut),
 		cmocka_unit_test(test_lengths),    cmocka_unit_test(test_changed),
 		cmocka_unit_test(test_companions), cmocka_unit_test(test_obj),
-		cmocka_unit_test(test_collada),    cmocka_unit_test(test_hash),
+		cmocka_unit_test(test_collada),    cmocka_unit_test(test_crash),
+		cmocka_unit_test(test_hash),
 		cmocka_unit_test(test_own_scenes), cmocka_unit_test(test_foreign),
 	};
 
