@@ -48,6 +48,10 @@ static void check_lamp(struct options_reader *reader, struct scene_form_lamp *en
 		unused(reader, entry->at, "cone_deg", "only a spot has a cone");
 		unused(reader, entry->at, "penumbra_deg", "only a spot has a cone");
 	}
+	if (lamp->kind == SCENE_LAMP_DIRECTIONAL)
+		unused(reader, entry->at, "radius_m", "a directional lamp's size is its angle_deg");
+	else
+		unused(reader, entry->at, "angle_deg", "only a directional lamp has an angle");
 	if (lamp->kind != SCENE_LAMP_POINT && !options_given(entry->at, "direction") &&
 	    (lamp->mount == SCENE_MOUNT_FIXED || lamp->mount == SCENE_MOUNT_ORBIT))
 		options_fault(reader, GR_DIAG_ERROR, entry->at, "direction",

@@ -136,7 +136,7 @@ static void hash_lamp(struct canonical *c, const struct scene_lamp *lamp)
 	canonical_u64(c, lamp->on);
 	canonical_floats(c, lamp->direction, 3);
 	canonical_floats(c, lamp->intensity, 3);
-	canonical_floats(c, &lamp->radius_m, 1);
+	canonical_floats(c, lamp->kind == SCENE_LAMP_DIRECTIONAL ? &lamp->angle_rad : &lamp->radius_m, 1);
 	/* What the kind and mount do not use does not count: scene_file_write leaves it out. */
 	if (lamp->mount == SCENE_MOUNT_ORBIT) {
 		canonical_floats(c, lamp->orbit_center, 3);

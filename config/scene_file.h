@@ -41,7 +41,8 @@ struct scene_lamp {
 	vec3 intensity;      /* W/sr, directional: W/m^2 on a surface facing it */
 	float cone_rad;      /* spot: full angle of the cone */
 	float penumbra_rad;  /* spot: width of the soft rim inside the cone, 0 = hard edge */
-	float radius_m;      /* of the source, for the soft edge of its shadows */
+	float radius_m;      /* spot, point: of the source, for the soft edge of its shadows */
+	float angle_rad;     /* directional: full angle of the source, likewise; 0..pi/2 */
 	bool on;
 	vec3 orbit_center;
 	float orbit_radius_m, orbit_period_s;

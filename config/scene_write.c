@@ -11,6 +11,10 @@ static void fill_lamp(const struct scene_lamp *from, struct scene_form_lamp *to)
 	to->lamp = *from;
 	if (from->kind != SCENE_LAMP_SPOT)
 		to->lamp.cone_rad = to->lamp.penumbra_rad = NAN;
+	if (from->kind == SCENE_LAMP_DIRECTIONAL)
+		to->lamp.radius_m = NAN;
+	else
+		to->lamp.angle_rad = NAN;
 	if (from->mount == SCENE_MOUNT_ORBIT)
 		to->lamp.position[0] = NAN;
 	else

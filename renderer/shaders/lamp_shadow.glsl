@@ -1,6 +1,6 @@
 // Soft-edged shadows of lamps: percentage-closer filtering whose width follows
-// the source's radius and the mean distance of what is in between (Fernando,
-// "Percentage-Closer Soft Shadows", 2005).
+// the source's radius (or angle, for parallel light) and the mean distance of
+// what is in between (Fernando, "Percentage-Closer Soft Shadows", 2005).
 layout(std140, binding = 4) uniform LampLayers {
 	MapLayer lamp_layers[96];
 };
@@ -24,13 +24,15 @@ float lamp_visibility(Lamp lamp, vec3 p, vec3 n, vec3 to_lamp, float metres, boo
 	MapLayer layer = lamp_layers[index];
 	ShadowPoint s = shadow_point(layer, p, n, -to_lamp * metres, metres);
 	float one_texel = 1.0 / layer.extent.y;
-	float source = lamp.direction.w == 2.0 ? 0.0 : lamp.position.w / (2.0 * layer.extent.x);
+	bool parallel = layer.extent.z == 0.0;
+	float source = lamp.position.w / (2.0 * layer.extent.x);
 	bool far_enough = reaches && s.axial > layer.range.x;
 	bool soft = source > 0.0 && far_enough;
 
 	// mean distance of the blockers from the lamp
 	float nearest = max(layer.range.x, LAMP_NEAREST_BLOCKER * s.axial);
-	float widest = max(source * (1.0 / nearest - 1.0 / s.axial), one_texel);
+	float widest = max(source * (parallel ? s.axial - layer.range.x : 1.0 / nearest - 1.0 / s.axial),
+			   one_texel);
 	float sum = 0.0, count = 0.0;
 	vec2 direction = vec2(1.0, 0.0);
 	int taps = soft ? LAMP_SEARCH_TAPS : 0;
@@ -49,7 +51,8 @@ float lamp_visibility(Lamp lamp, vec3 p, vec3 n, vec3 to_lamp, float metres, boo
 		direction = golden * direction;
 	}
 
-	float width = source * (count / max(sum, 1e-6) - 1.0 / s.axial);
+	float width = source * (parallel ? s.axial - sum / max(count, 1.0)
+					 : count / max(sum, 1e-6) - 1.0 / s.axial);
 
 	taps = !far_enough ? 0 : !soft ? LAMP_HARD_TAPS : count > 0.0 ? LAMP_FILTER_TAPS : 0;
 	return shadow_filter(lamp_depth_compare, index, s,

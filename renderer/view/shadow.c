@@ -139,7 +139,9 @@ static void fill_record(struct lamp_record *r, const struct scene_lamp *file,
 		r->direction[i] = state->refused ? (i == 1 ? -1.0f : 0.0f) : lamp->direction[i];
 		r->intensity[i] = lit ? lamp->intensity[i] : 0;
 	}
-	r->position[3] = file->radius_m;
+	/* metres, or for parallel light metres of blur per metre behind the blocker */
+	r->position[3] = file->kind == SCENE_LAMP_DIRECTIONAL ? tanf(0.5f * file->angle_rad)
+							       : file->radius_m;
 	r->direction[3] = (float)file->kind;
 	r->cone[0] = umbra;
 	r->cone[1] = penumbra;
