@@ -4,9 +4,9 @@
 #include "renderer/gi/lpv_cpu.h"
 #include "renderer/gi/lpv_private.h"
 #include "renderer/gl/target.h"
-#include "tests/accuracy/lpv_bench.h"
-#include "tests/accuracy/room.h"
-#include "tests/accuracy/truth.h"
+#include "tools/bench/lpv_bench.h"
+#include "tools/bench/room.h"
+#include "tools/bench/truth.h"
 #include "tests/unit/unit.h"
 
 #include <epoxy/gl.h>

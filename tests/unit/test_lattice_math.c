@@ -3,7 +3,7 @@
 #include "renderer/gi/dispatch.h"
 #include "renderer/gi/lpv_cpu.h"
 #include "renderer/gi/transfer.h"
-#include "tests/accuracy/room.h"
+#include "tools/bench/room.h"
 #include "tests/unit/unit.h"
 
 #include <math.h>

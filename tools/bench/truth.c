@@ -1,4 +1,4 @@
-#include "tests/accuracy/truth.h"
+#include "tools/bench/truth.h"
 
 #include "base/result.h"
 

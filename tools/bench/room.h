@@ -3,8 +3,8 @@
  * Cornell-like room of 4 m with two boxes (own measures), and rooms with
  * walls for the tests on leaks.
  */
-#ifndef GROTTO_TESTS_ROOM_H
-#define GROTTO_TESTS_ROOM_H
+#ifndef GROTTO_TOOLS_BENCH_ROOM_H
+#define GROTTO_TOOLS_BENCH_ROOM_H
 
 #include "renderer/scene/scene.h"
 

@@ -3,8 +3,8 @@
  * surfaces, one spotlight. And the spotlight's light on the surfaces as a set
  * of points, laid out like a reflective shadow map.
  */
-#ifndef GROTTO_TESTS_TRUTH_H
-#define GROTTO_TESTS_TRUTH_H
+#ifndef GROTTO_TOOLS_BENCH_TRUTH_H
+#define GROTTO_TOOLS_BENCH_TRUTH_H
 
 #include "renderer/gi/surface.h"
 #include "renderer/scene/scene.h"

@@ -1,4 +1,4 @@
-#include "tests/accuracy/room.h"
+#include "tools/bench/room.h"
 
 #include <math.h>
 #include <stdlib.h>

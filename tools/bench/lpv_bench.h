@@ -2,11 +2,11 @@
  * What the lattice's GL tests share: a context, reflective shadow maps filled
  * from traced points, a frame.
  */
-#ifndef GROTTO_TESTS_LPV_BENCH_H
-#define GROTTO_TESTS_LPV_BENCH_H
+#ifndef GROTTO_TOOLS_BENCH_LPV_BENCH_H
+#define GROTTO_TOOLS_BENCH_LPV_BENCH_H
 
 #include "renderer/gi/gi.h"
-#include "tests/accuracy/truth.h"
+#include "tools/bench/truth.h"
 
 /* Uploads one layer into an existing set of textures; version grows. */
 void bench_maps_init(struct rsm_set *set, int pixels, int layers);

@@ -1,4 +1,4 @@
-#include "tests/accuracy/lpv_bench.h"
+#include "tools/bench/lpv_bench.h"
 
 #include "renderer/gl/program.h"
 
