@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "base/result.h"
+#include "renderer/scene/scene.h"
 #include "tools/cli.h"
 #include "tools/command.h"
 #include "tools/demo_plan.h"
@@ -71,12 +72,48 @@ static int make_socket_path(struct demo *demo)
 	return GR_OK;
 }
 
+/* A file that cannot be used is a wrong path or a wrong file: not this run's fault. */
+static int input_result(int result)
+{
+	switch (result) {
+	case GR_ERR_IO:
+	case GR_ERR_RANGE:
+	case GR_ERR_FORMAT: return GR_ERR_CONFIG;
+	default: return result;
+	}
+}
+
+/* All of it before anything is started: the daemons would refuse it one by one. */
 static int load(struct demo *demo, struct gr_diag *diag)
 {
+	struct scene *scene = NULL;
 	int result = layout_load(demo->options.layout, &demo->layout, diag);
 	int scene_result = scene_file_load(demo->options.scene, &demo->scene, diag);
 
-	return result != GR_OK ? result : scene_result;
+	if (scene_result == GR_OK)
+		scene_result = scene_import(demo->scene, &scene, diag);
+	scene_destroy(&scene);
+	return input_result(result != GR_OK ? result : scene_result);
+}
+
+/* The out folder, made where it is missing, into which files can be written. */
+static int make_out(const char *path, struct gr_diag *diag)
+{
+	struct stat status;
+	int result = make_folders(path);
+	const char *why = NULL;
+
+	if (result == GR_ERR_NOMEM)
+		return result;
+	if (result == GR_OK && stat(path, &status) == 0 && !S_ISDIR(status.st_mode))
+		why = "is there and no folder";
+	else if (result != GR_OK || access(path, W_OK | X_OK) != 0)
+		why = strerror(errno);
+	if (!why)
+		return GR_OK;
+	gr_diag_add(diag, GR_DIAG_ERROR, path, 0, "--out",
+		    "%s; give a folder that can be made and written to", why);
+	return GR_ERR_CONFIG;
 }
 
 static int write_layout(const struct demo *demo)
@@ -101,12 +138,13 @@ static int prepare(struct demo *demo, struct gr_diag *diag)
 		.stereo = demo->options.stereo,
 		.rate_hz = demo->options.rate_hz,
 	};
-	int result = make_folders(demo->options.out);
+	int result = make_out(demo->options.out, diag);
 
-	if (result == GR_OK)
-		result = make_socket_path(demo);
+	if (result != GR_OK)
+		return result;
+	result = make_socket_path(demo);
 	if (result != GR_OK) {
-		gr_diag_add(diag, GR_DIAG_ERROR, demo->options.out, 0, NULL, "%s",
+		gr_diag_add(diag, GR_DIAG_ERROR, "/tmp", 0, NULL, "no folder for a socket: %s",
 			    strerror(errno));
 		return result;
 	}
@@ -152,9 +190,11 @@ static int run(struct demo *demo)
 		fprintf(stderr, "grotto demo: %s\n", strerror(errno));
 		return GR_EXIT_RUNTIME;
 	}
-	printf("%s: %zu walls, %zu nodes, %d frames of %s into %s\n", demo->layout->name,
-	       demo->layout->wall_count, demo->layout->node_count, demo->options.frames,
-	       demo->scene->name, demo->options.out);
+	printf("%s: %zu wall%s, %zu node%s, %d frame%s of %s into %s\n", demo->layout->name,
+	       demo->layout->wall_count, demo->layout->wall_count == 1 ? "" : "s",
+	       demo->layout->node_count, demo->layout->node_count == 1 ? "" : "s",
+	       demo->options.frames, demo->options.frames == 1 ? "" : "s", demo->scene->name,
+	       demo->options.out);
 	fflush(stdout);
 	faults = demo_run(demo) == GR_OK ? demo_summary(demo) : -1;
 	if (all_ended_well(demo) && demo_room(demo) != GR_OK)

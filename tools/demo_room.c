@@ -178,12 +178,31 @@ out:
 	return result;
 }
 
+static bool any_picture(const struct demo *demo)
+{
+	bool any = false;
+
+	for (size_t i = 0; i < demo->layout->node_count && !any; i++) {
+		char *path = last_picture(demo, demo->layout->nodes[i].name);
+
+		any = path != NULL;
+		free(path);
+	}
+	return any;
+}
+
 int demo_room(const struct demo *demo)
 {
 	size_t count = demo->layout->wall_count;
-	struct room_picture *pictures = calloc(count, sizeof *pictures);
-	int result = pictures ? GR_OK : GR_ERR_NOMEM;
+	struct room_picture *pictures;
+	int result;
 
+	if (!any_picture(demo)) {
+		fprintf(stderr, "no wall left a picture in %s: no room.png\n", demo->options.out);
+		return GR_ERR_IO;
+	}
+	pictures = calloc(count, sizeof *pictures);
+	result = pictures ? GR_OK : GR_ERR_NOMEM;
 	/* A wall without a picture leaves its place grey: the others are still worth a look. */
 	for (size_t i = 0; i < count && pictures; i++) {
 		int wall_result = compose_wall(demo, i, &pictures[i]);

@@ -284,10 +284,24 @@ static void print_timing(struct json_object *master, const char *what, const cha
 	       (long long)report_count(h, "count"));
 }
 
+/* What was asked for is only said of a run that did it. */
+static void print_frames(const struct summary *summary)
+{
+	int frames = summary->demo->options.frames;
+	int64_t complete = report_count(summary->master, "frames_complete");
+
+	if (summary->fault_count == 0 || complete == frames)
+		printf("%d frame%s", frames, frames == 1 ? "" : "s");
+	else if (report_member(summary->master, "frames_complete"))
+		printf("%lld of %d frame%s complete", (long long)complete, frames,
+		       frames == 1 ? "" : "s");
+	else
+		printf("%d frame%s asked for, the master told none", frames,
+		       frames == 1 ? "" : "s");
+}
+
 static void print_summary(const struct summary *summary)
 {
-	double seconds = (double)summary->demo->took_ns * 1e-9;
-
 	print_nodes(summary);
 	if (summary->master) {
 		print_timing(summary->master, "swap skew", "skew_us");
@@ -301,8 +315,10 @@ static void print_summary(const struct summary *summary)
 	print_stages(summary);
 	if (!light_agrees(summary))
 		fprintf(stderr, "warning: nodes with the same GL hold different light\n");
-	printf("%s; %d frames in %.1f s with start and end\n",
-	       report_text(summary->nodes[0], "renderer"), summary->demo->options.frames, seconds);
+	if (report_member(summary->nodes[0], "renderer"))
+		printf("%s; ", report_text(summary->nodes[0], "renderer"));
+	print_frames(summary);
+	printf(" in %.1f s with start and end\n", (double)summary->demo->took_ns * 1e-9);
 }
 
 static int save_json(const struct demo *demo, struct json_object *json)

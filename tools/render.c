@@ -77,6 +77,9 @@ static int load(struct still *still, const char *path, const struct render_optio
 		result = scene_import(still->file, &still->scene, &diag);
 	say_diag(&diag);
 	gr_diag_finish(&diag);
+	/* A file that cannot be opened is a wrong path. */
+	if (result == GR_ERR_IO || result == GR_ERR_RANGE || result == GR_ERR_FORMAT)
+		result = GR_ERR_CONFIG;
 	if (result == GR_OK)
 		result = choose_camera(still, options->camera);
 	if (result == GR_OK && options->size[0] > 0)

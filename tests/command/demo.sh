@@ -20,8 +20,9 @@ cp "$srcdir/tests/command/double.sh" "$work/grotto-node"
 chmod +x "$work"/grotto-*
 cat >"$work/a.scene" <<'EOF'
 name = "a";
-model = "none.gltf";
+model = "box.gltf";
 EOF
+cp "$srcdir/scenes/box.gltf" "$work/box.gltf"
 DOUBLE_FRAMES=4 DOUBLE_PICTURE=$srcdir/tests/data/picture.png DOUBLE_FAULT=
 export DOUBLE_FRAMES DOUBLE_PICTURE DOUBLE_FAULT
 
@@ -96,6 +97,7 @@ children=$(cat "/proc/$demo_pid/task/$demo_pid/children" 2>/dev/null)
 kill -TERM $demo_pid
 wait $demo_pid
 [ $? -eq 1 ] || fail "interrupted: not exit 1: $(cat "$work/said")"
+grep -q 'asked for' "$work/said" || fail "interrupted: frames that were not: $(cat "$work/said")"
 for child in $children; do
 	[ ! -d "/proc/$child" ] || fail "process $child outlives its demo"
 done
@@ -110,6 +112,39 @@ demo none --pixels-scale 0.001
 [ $status -eq 2 ] || fail "pixels scaled to nothing: exit $status: $said"
 demo none --layout "$srcdir/tests/data/bad/empty.cave"
 [ $status -eq 2 ] || fail "a faulty layout: exit $status: $said"
+
+# Nothing is started for an input that cannot be used.
+cat >"$work/nowhere.scene" <<'EOF'
+name = "nowhere";
+model = "nowhere.gltf";
+EOF
+# unfit WORDS OPTION...: exit 2 with these words, and no process was started
+unfit() {
+	words=$1
+	shift
+	rm -f "$work"/out/*.log
+	demo none "$@"
+	[ $status -eq 2 ] || fail "demo $*: exit $status: $said"
+	case $said in *"$words"*) ;; *) fail "demo $*: '$words' is not in: $said" ;; esac
+	case $said in *" frames of "* | *"start and end"*) fail "demo $*: runs on: $said" ;; esac
+	[ -z "$(find "$work/out" -name '*.log')" ] || fail "demo $*: a process was started"
+}
+unfit nowhere.gltf --scene "$work/nowhere.scene"
+unfit truncated.gltf --scene "$srcdir/tests/data/bad/model-truncated.scene"
+unfit none.scene --scene "$work/none.scene"
+unfit none.cave --layout "$work/none.cave"
+unfit "no folder" --out "$work/a.scene"
+unfit --out --out "$work/a.scene/below"
+unfit --out --out /proc/nowhere
+if [ "$(id -u)" -ne 0 ]; then
+	mkdir "$work/closed" && chmod 500 "$work/closed"
+	unfit --out --out "$work/closed"
+fi
+for scene in "$work/none.scene" "$work/nowhere.scene"; do
+	said=$("$work/grotto" render "$scene" -o "$work/out/still.png" 2>&1)
+	status=$?
+	[ $status -eq 2 ] || fail "render $scene: exit $status: $said"
+done
 
 [ $failed -eq 0 ] && echo "ok"
 exit $failed

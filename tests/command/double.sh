@@ -29,7 +29,7 @@ silent) exit 0 ;;
 esac
 if [ "$me" = master ]; then
 	cat >"$report" <<EOF
-{"ok":true,"frame":$DOUBLE_FRAMES,"state_hash":"$hash","skew_us":{"count":1,"p50":5,"p99":9,"max":9},
+{"ok":true,"frame":$DOUBLE_FRAMES,"frames_complete":$DOUBLE_FRAMES,"state_hash":"$hash","skew_us":{"count":1,"p50":5,"p99":9,"max":9},
 "commit_to_last_swap_us":{"count":1,"p50":50,"p99":90,"max":90},"nodes":[],"wire":{"bytes_out":1}}
 EOF
 else
