@@ -5,10 +5,12 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static void put(struct json *json, const char *bytes, size_t n)
@@ -125,17 +127,49 @@ void json_hash(struct json *json, const char *key, uint64_t value)
 	put_format(json, "\"%016" PRIx64 "\"", value);
 }
 
+/* The file beside `path` that becomes it. */
+static int name_beside(const char *path, char beside[PATH_MAX])
+{
+	int n = snprintf(beside, PATH_MAX, "%s.%ld.tmp", path, (long)getpid());
+
+	if (n >= 0 && n < PATH_MAX)
+		return GR_OK;
+	gr_error("%s: the path is too long", path);
+	return GR_ERR_RANGE;
+}
+
+int json_try(const char *path)
+{
+	char beside[PATH_MAX];
+	struct stat status;
+	int r = name_beside(path, beside);
+	FILE *file;
+
+	if (r < 0)
+		return r;
+	if (stat(path, &status) == 0 && S_ISDIR(status.st_mode)) {
+		gr_error("%s: cannot be written: %s", path, strerror(EISDIR));
+		return GR_ERR_IO;
+	}
+	file = fopen(beside, "we");
+	if (!file) {
+		gr_error("%s: cannot be written: %s", path, strerror(errno));
+		return GR_ERR_IO;
+	}
+	fclose(file);
+	unlink(beside);
+	return GR_OK;
+}
+
 int json_save(const char *path, const char *text, size_t len)
 {
-	char beside[4096];
-	int n = snprintf(beside, sizeof beside, "%s.%ld.tmp", path, (long)getpid());
+	char beside[PATH_MAX];
 	FILE *file;
-	int r = GR_ERR_IO;
+	int r = name_beside(path, beside);
 
-	if (n < 0 || (size_t)n >= sizeof beside) {
-		gr_error("%s: the path is too long", path);
-		return GR_ERR_RANGE;
-	}
+	if (r < 0)
+		return r;
+	r = GR_ERR_IO;
 	file = fopen(beside, "we");
 	if (!file)
 		goto out;

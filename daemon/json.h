@@ -29,6 +29,8 @@ void json_f64(struct json *json, const char *key, double value);
 /* A 64 bit hash as 16 hexadecimal digits in a string: JSON readers lose bits of large numbers. */
 void json_hash(struct json *json, const char *key, uint64_t value);
 
+/* Could json_save write there? GR_OK, or a negative result and a line in the log. */
+int json_try(const char *path);
 /* Writes text to `path` by way of a file beside it, so that a reader sees all or nothing. */
 int json_save(const char *path, const char *text, size_t len);
 

@@ -2,6 +2,7 @@
 noinst_LIBRARIES += daemon/libgdaemon.a
 daemon_libgdaemon_a_SOURCES = \
 	daemon/control.c daemon/control.h \
+	daemon/dropped.c daemon/dropped.h \
 	daemon/frame_stats.c daemon/frame_stats.h \
 	daemon/histogram.c daemon/histogram.h \
 	daemon/json.c daemon/json.h \

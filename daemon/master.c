@@ -258,22 +258,6 @@ static void advance(struct master *m)
 	loop_timer_set(m->loop, m->tick_timer, fdp_master_next(m->fdp));
 }
 
-static void bad_datagram(struct master *m, int result, const struct net_address *from,
-			 int64_t now_ns)
-{
-	struct gr_log_limit *limit = &m->bad[-result < MASTER_REASONS ? -result : 0];
-	char text[NET_ADDRESS_TEXT];
-	uint64_t times;
-
-	if (!gr_log_limit(limit, now_ns, &times))
-		return;
-	net_address_text(from, text);
-	gr_warning("dropped a datagram from %s: %s (%" PRIu64 " such since the last line, %" PRIu64
-		   " in all)", text,
-		   result == GR_ERR_MISMATCH ? "of another session" : gr_result_name(result), times,
-		   limit->total);
-}
-
 static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 			const struct net_address *from)
 {
@@ -287,7 +271,7 @@ static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	node = fdp_master_receive(m->fdp, bytes, len, now_ns, &fresh);
 	m->from = NULL;
 	if (node < 0) {
-		bad_datagram(m, node, from, now_ns);
+		dropped_add(&m->bad, node, from, now_ns);
 		return;
 	}
 	/* Whoever sends a recording again must not have what is for the node. */
@@ -443,6 +427,7 @@ void master_leave(struct master *master)
 	master->left = true;
 	fdp_master_leave(master->fdp, gr_clock_now(&gr_clock_monotonic));
 	net_flush(master->net);
+	dropped_finish(&master->bad);
 }
 
 void master_destroy(struct master **master)

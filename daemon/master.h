@@ -12,6 +12,7 @@
 #ifndef GROTTO_DAEMON_MASTER_H
 #define GROTTO_DAEMON_MASTER_H
 
+#include "daemon/dropped.h"
 #include "daemon/frame_stats.h"
 #include "daemon/loop.h"
 #include "daemon/master_state.h"
@@ -22,7 +23,6 @@
 
 #include "base/log.h"
 
-#define MASTER_REASONS 16 /* negative results, for the limits of log lines */
 
 struct master_params {
 	const struct layout *layout;
@@ -62,7 +62,8 @@ struct master {
 	int tick_timer, frame_timer, second_timer;
 	uint64_t late, evicted, refused, joined;
 	uint64_t logged_frame;
-	struct gr_log_limit bad[MASTER_REASONS], refused_limit[FDP_MAX_NODES], range_limit, late_limit;
+	struct dropped bad;
+	struct gr_log_limit refused_limit[FDP_MAX_NODES], range_limit, late_limit;
 	struct gr_log_limit mismatch_limit, send_limit;
 	uint64_t seen_send_failed;
 };

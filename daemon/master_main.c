@@ -84,6 +84,9 @@ static int open_all(struct opened *o, const struct master_options *options)
 		priority_take(options->common.priority);
 	if (r >= 0)
 		r = privileges_drop(options->common.user, path);
+	/* Root could write it; can who is left? */
+	if (r >= 0 && options->common.report && json_try(options->common.report) < 0)
+		r = GR_ERR_CONFIG;
 	return r;
 }
 
@@ -142,7 +145,10 @@ int main(int argc, char **argv)
 	case OPTIONS_WRONG: return GR_EXIT_CONFIG;
 	}
 	gr_log_set_level((enum gr_log_level)options.common.log_level);
-	r = load(&o, &options);
+	/* Now, and not at the end of a long run. */
+	r = options.common.report ? json_try(options.common.report) : GR_OK;
+	if (r >= 0)
+		r = load(&o, &options);
 	if (r < 0) {
 		status = room_files_exit(r);
 		goto out;

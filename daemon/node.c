@@ -115,22 +115,6 @@ static void on_event(void *ctx, const struct fdp_node_event *event)
 	}
 }
 
-static void bad_datagram(struct node *n, int result, const struct net_address *from,
-			 int64_t now_ns)
-{
-	struct gr_log_limit *limit = &n->bad[-result < NODE_REASONS ? -result : 0];
-	char text[NET_ADDRESS_TEXT];
-	uint64_t times;
-
-	if (!gr_log_limit(limit, now_ns, &times))
-		return;
-	net_address_text(from, text);
-	gr_warning("dropped a datagram from %s: %s (%" PRIu64 " such since the last line, %" PRIu64
-		   " in all)", text,
-		   result == GR_ERR_MISMATCH ? "of another session" : gr_result_name(result), times,
-		   limit->total);
-}
-
 static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 			const struct net_address *from)
 {
@@ -140,7 +124,7 @@ static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 
 	/* A master's words before it has taken us are none of ours, and nothing bad. */
 	if (r < 0 && !(r == GR_ERR_MISMATCH && fdp_node_status(n->fdp) != FDP_NODE_LIVE))
-		bad_datagram(n, r, from, now_ns);
+		dropped_add(&n->bad, r, from, now_ns);
 }
 
 /* Sends what is due; answers leave before any drawing begins. */
@@ -386,6 +370,7 @@ void node_leave(struct node *node)
 		fdp_node_leave(node->fdp, gr_clock_now(&gr_clock_monotonic));
 		net_flush(node->net);
 	}
+	dropped_finish(&node->bad);
 	if (node->pictures && node->drawn != 0 && node->drawn == node->swapped &&
 	    node->drawn != node->saved)
 		save_picture(node, node->drawn);

@@ -15,6 +15,7 @@
 #define GROTTO_DAEMON_NODE_H
 
 #include "base/log.h"
+#include "daemon/dropped.h"
 #include "daemon/loop.h"
 #include "daemon/notify.h"
 #include "daemon/pictures.h"
@@ -22,7 +23,6 @@
 #include "protocol/node.h"
 #include "renderer/renderer.h"
 
-#define NODE_REASONS 16
 
 struct node_params {
 	const struct layout *layout;
@@ -66,7 +66,8 @@ struct node {
 
 	int tick_timer, second_timer, window_timer;
 	uint64_t logged_swapped;
-	struct gr_log_limit bad[NODE_REASONS], refused_limit, invalid_limit, mismatch_limit, send_limit;
+	struct dropped bad;
+	struct gr_log_limit refused_limit, invalid_limit, mismatch_limit, send_limit;
 	uint64_t seen_send_failed;
 };
 

@@ -198,6 +198,9 @@ static int open_all(struct opened *o, const struct node_options *options)
 		take_priority(o, options->common.priority);
 	if (r >= 0)
 		r = privileges_drop(options->common.user, options->pictures);
+	/* Root could write it; can who is left? */
+	if (r >= 0 && options->common.report && json_try(options->common.report) < 0)
+		r = GR_ERR_CONFIG;
 	if (r < 0)
 		return r;
 	memcpy(params.content_hash, o->files.content_hash, sizeof params.content_hash);
@@ -249,7 +252,10 @@ int main(int argc, char **argv)
 	case OPTIONS_WRONG: return GR_EXIT_CONFIG;
 	}
 	gr_log_init(options.node, (enum gr_log_level)options.common.log_level);
-	r = room_files_load(&o.files, &options.common);
+	/* Now, and not at the end of a long run. */
+	r = options.common.report ? json_try(options.common.report) : GR_OK;
+	if (r >= 0)
+		r = room_files_load(&o.files, &options.common);
 	if (r >= 0)
 		r = find_node(&o, options.node);
 	if (r < 0) {

@@ -15,8 +15,9 @@ tests_unit_test_children_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_children_LDADD = tools/libgtools.a $(BASE_LIBS) $(CMOCKA_LIBS)
 
 # The command from outside. Scripts run in the build folder and read $(srcdir).
-dist_check_SCRIPTS += tests/command/check.sh tests/command/demo.sh tests/command/double.sh
-TESTS += tests/command/check.sh tests/command/demo.sh
+dist_check_SCRIPTS += tests/command/check.sh tests/command/demo.sh tests/command/double.sh \
+	tests/command/report.sh
+TESTS += tests/command/check.sh tests/command/demo.sh tests/command/report.sh
 EXTRA_DIST += \
 	tests/data/picture.png \
 	tests/data/bad/bad-lamp-kind.scene \

@@ -75,9 +75,13 @@ static void json_is_saved_whole(void **state)
 	fclose(file);
 	assert_int_equal(n, 8);
 	assert_memory_equal(back, "{\"a\":1}\n", 8);
+	assert_int_equal(json_try(path), GR_OK);
 	unlink(path);
-	assert_int_equal(rmdir(dir), 0); /* nothing is left beside it */
+	assert_int_equal(json_try(path), GR_OK);
 	gr_log_set_level((enum gr_log_level)0);
+	assert_int_equal(json_try(dir), GR_ERR_IO); /* a folder */
+	assert_int_equal(rmdir(dir), 0); /* nothing is left beside it */
+	assert_int_equal(json_try(path), GR_ERR_IO);
 	assert_int_equal(json_save(path, "{}", 2), GR_ERR_IO);
 	gr_log_set_level(GR_LOG_ERROR);
 }

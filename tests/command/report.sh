@@ -1,0 +1,25 @@
+#!/bin/sh
+# A daemon whose --report cannot be written does not start: exit status 2.
+set -u
+: "${srcdir:=.}" "${builddir:=.}"
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+failed=0
+for daemon in master "node --node front"; do
+	for report in "$work/none/report.json" "$work" /proc/report.json; do
+		# shellcheck disable=SC2086
+		said=$("$builddir"/daemon/grotto-$daemon --layout "$srcdir/layouts/cave4.cave" \
+			--scene "$srcdir/scenes/box.scene" --report "$report" 2>&1 </dev/null)
+		status=$?
+		case $status:$said in
+		2:*"$report: cannot be written"*) ;;
+		*)
+			echo "FAIL: $daemon --report $report: exit $status: $said"
+			failed=1
+			;;
+		esac
+	done
+done
+[ -z "$(ls "$work")" ] || { echo "FAIL: left behind: $(ls "$work")"; failed=1; }
+[ $failed -eq 0 ] && echo "ok"
+exit $failed
