@@ -267,6 +267,8 @@ static int check_primitive(struct gltf *g, struct json_object *primitive,
 		accessors, (size_t)gltf_whole(attributes, "POSITION", 0));
 	int64_t vertices = gltf_whole(accessor, "count", 0);
 
+	if (mode < 0 || mode >= (int64_t)(sizeof least / sizeof *least))
+		return gltf_fault(g, "meshes", "a primitive's mode must be 0 to 6");
 	if (!attribute_ok(accessors, attributes, "POSITION", "VEC3", vertices) ||
 	    !attribute_ok(accessors, attributes, "NORMAL", "VEC3", vertices) ||
 	    !attribute_ok(accessors, attributes, "TEXCOORD_0", "VEC2", vertices))
@@ -325,8 +327,6 @@ static int read_parents(const struct gltf *g, int64_t *parents)
 	size_t nodes;
 	struct json_object *node_list = gltf_list(g, "nodes", &nodes);
 
-	for (size_t i = 0; i < nodes; i++)
-		parents[i] = -1;
 	for (size_t i = 0; i < nodes; i++) {
 		struct json_object *children =
 			gltf_member(json_object_array_get_idx(node_list, i), "children");
@@ -375,6 +375,8 @@ static int check_nodes(const struct gltf *g)
 	parents = malloc((nodes + 1) * sizeof *parents);
 	if (!parents)
 		return GR_ERR_NOMEM;
+	for (size_t i = 0; i <= nodes; i++)
+		parents[i] = -1;
 	result = read_parents(g, parents);
 	if (result == GR_OK)
 		result = check_parents(g, parents, nodes);

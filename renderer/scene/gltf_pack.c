@@ -19,11 +19,17 @@ struct pack {
 /* 4-aligned, as accessors want to be. */
 static int append(struct pack *p, const uint8_t *bytes, size_t len, size_t *at)
 {
-	size_t padded = (len + 3) / 4 * 4;
+	size_t padded;
 
+	*at = p->len;
+	if (len == 0)
+		return GR_OK;
+	if (!bytes)
+		return GR_ERR_STATE;
+	padded = len > IMPORT_MAX_FILE ? len : (len + 3) / 4 * 4;
 	if (padded > IMPORT_MAX_FILE - p->len)
 		return gltf_fault(p->g, "buffers", "all buffers together are too large");
-	if (padded > p->size - p->len) {
+	if (!p->bytes || padded > p->size - p->len) {
 		size_t size = p->len + padded > 2 * p->size ? p->len + padded : 2 * p->size;
 		uint8_t *grown = realloc(p->bytes, size);
 
@@ -34,7 +40,6 @@ static int append(struct pack *p, const uint8_t *bytes, size_t len, size_t *at)
 	}
 	memcpy(p->bytes + p->len, bytes, len);
 	memset(p->bytes + p->len + len, 0, padded - len);
-	*at = p->len;
 	p->len += padded;
 	return GR_OK;
 }
@@ -167,8 +172,8 @@ static int pack_image(struct pack *p, struct json_object *image)
 {
 	struct json_object *uri = gltf_member(image, "uri");
 	bool inside = gltf_member(image, "bufferView") != NULL;
-	uint8_t *bytes;
-	size_t len, at, view;
+	uint8_t *bytes = NULL;
+	size_t len = 0, at, view = 0;
 	int result;
 
 	json_object_object_del(image, "mimeType");
