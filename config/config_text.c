@@ -92,7 +92,7 @@ static int include_line(const char *text)
 	return 0;
 }
 
-/* What libconfig says is right but terse; the two slips that people make get a hint. */
+/* What libconfig says is right but terse; the slips that people make get a hint. */
 static const char *parse_hint(const char *error)
 {
 	if (strstr(error, "mismatched element type"))
@@ -100,7 +100,39 @@ static const char *parse_hint(const char *error)
 	if (strstr(error, "syntax error"))
 		return "; the fault may be at the end of the line before: look for a missing ';', ',', "
 		       "'\"' or bracket";
+	if (strstr(error, "duplicate setting"))
+		return "; give each key once";
 	return "";
+}
+
+/* The key that a line sets, when it sets just one; else NULL. Caller frees. */
+static char *line_key(const char *text, int line)
+{
+	size_t blanks, n, signs = 0;
+
+	for (; line > 1 && text; line--) {
+		text = strchr(text, '\n');
+		text = text ? text + 1 : NULL;
+	}
+	if (!text || line < 1)
+		return NULL;
+	for (size_t i = 0; text[i] && text[i] != '\n'; i++)
+		signs += text[i] == '=' || text[i] == ':';
+	blanks = strspn(text, " \t\r{(");
+	n = strspn(text + blanks, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-*");
+	return signs == 1 && n > 0 ? strndup(text + blanks, n) : NULL;
+}
+
+/* What libconfig found wrong, and where. */
+static void report_parse(const config_t *config, const char *text, const char *name,
+			 struct gr_diag *diag)
+{
+	const char *error = config_error_text(config);
+	int line = config_error_line(config);
+	char *key = strstr(error, "duplicate setting") ? line_key(text, line) : NULL;
+
+	gr_diag_add(diag, GR_DIAG_ERROR, name, line, key, "%s%s", error, parse_hint(error));
+	free(key);
 }
 
 static int line_of(const char *text, const char *at)
@@ -155,8 +187,7 @@ int config_text_parse(const char *text, size_t len, const char *name, config_t *
 		gr_diag_add(diag, GR_DIAG_ERROR, name, line, "@include",
 			    "not allowed; write everything into this one file");
 	} else if (!config_read_string(out, copy)) {
-		gr_diag_add(diag, GR_DIAG_ERROR, name, config_error_line(out), NULL, "%s%s",
-			    config_error_text(out), parse_hint(config_error_text(out)));
+		report_parse(out, copy, name, diag);
 	} else {
 		result = GR_OK;
 	}

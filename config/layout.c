@@ -58,6 +58,13 @@ static void build_walls(struct layout *layout, struct layout_file *file)
 	layout->wall_count = file->wall_count;
 }
 
+static int key_line(const config_setting_t *group, const char *key)
+{
+	const config_setting_t *at = config_setting_get_member(group, key);
+
+	return at ? (int)config_setting_source_line(at) : 0;
+}
+
 static void build_rest(struct layout *layout, struct layout_file *file)
 {
 	struct layout_network *network = &file->network.network;
@@ -68,6 +75,8 @@ static void build_rest(struct layout *layout, struct layout_file *file)
 	layout->network.master_address = take(&network->master_address);
 	layout->network.group = take(&network->group);
 	layout->network.key_file = take(&network->key_file);
+	if (layout->network.key_file && file->network.at)
+		layout->network.key_file_line = key_line(file->network.at, "key_file");
 	layout->rates = file->rates.rates;
 	for (size_t i = 0; i < file->tracker_count; i++) {
 		layout->trackers[i] = file->trackers[i].tracker;

@@ -73,6 +73,7 @@ struct layout_network {
 	int ttl;
 	int mtu;        /* bytes of an IP packet */
 	char *key_file; /* absolute, or relative to the layout file; NULL: unkeyed, loopback only */
+	int key_file_line; /* in the file, 0 without one */
 };
 
 struct layout_rates {

@@ -36,8 +36,9 @@ static int load(struct opened *o, const struct master_options *options)
 	/* Only the hash of the model is needed from here on. */
 	scene_destroy(&o->files.scene);
 	if ((size_t)options->expect > o->files.layout->node_count) {
-		gr_error("--expect %d: the layout has %zu nodes", options->expect,
-			 o->files.layout->node_count);
+		gr_error("--expect %d: the layout has %zu node%s", options->expect,
+			 o->files.layout->node_count,
+			 o->files.layout->node_count == 1 ? "" : "s");
 		return GR_ERR_CONFIG;
 	}
 	r = trackers_open(&o->trackers, o->files.layout, &diag);
@@ -94,9 +95,11 @@ static int run(struct opened *o)
 {
 	const struct layout *layout = o->files.layout;
 
-	notify_ready("waiting for %zu nodes", layout->node_count);
-	gr_notice("room '%s', scene '%s': %zu nodes, port %u, %g frames a second", layout->name,
-		  o->files.scene_file->name, layout->node_count, layout->network.master_port,
+	notify_ready("waiting for %zu node%s", layout->node_count,
+		     layout->node_count == 1 ? "" : "s");
+	gr_notice("room '%s', scene '%s': %zu node%s, port %u, %g frames a second", layout->name,
+		  o->files.scene_file->name, layout->node_count,
+		  layout->node_count == 1 ? "" : "s", layout->network.master_port,
 		  (double)layout->rates.frame_hz);
 	while (!loop_stopped(o->loop)) {
 		if (loop_once(o->loop, -1) < 0) {

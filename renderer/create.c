@@ -77,8 +77,9 @@ static int create_pictures(struct renderer *r)
 static void log_stages(const struct renderer *r, const struct emissive_patches *patches)
 {
 	if (r->shadow)
-		gr_info("stage shadow: %zu lamps, %d maps of %d x %d, drawn when a lamp moves",
-			r->file->lamp_count, shadow_layers(r->file), r->file->shadow_pixels,
+		gr_info("stage shadow: %zu lamp%s, %d map%s of %d x %d, drawn when a lamp moves",
+			r->file->lamp_count, r->file->lamp_count == 1 ? "" : "s",
+			shadow_layers(r->file), shadow_layers(r->file) == 1 ? "" : "s", r->file->shadow_pixels,
 			r->file->shadow_pixels);
 	else
 		gr_info("stage shadow: none, the scene has no lamps");

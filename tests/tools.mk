@@ -19,12 +19,12 @@ dist_check_SCRIPTS += tests/command/check.sh tests/command/demo.sh tests/command
 	tests/command/report.sh
 TESTS += tests/command/check.sh tests/command/demo.sh tests/command/report.sh
 EXTRA_DIST += \
+	tests/data/key-missing.cave \
 	tests/data/picture.png \
 	tests/data/bad/bad-lamp-kind.scene \
 	tests/data/bad/empty.cave \
 	tests/data/bad/eye-outside.cave \
 	tests/data/bad/host-name.cave \
-	tests/data/bad/key-missing.cave \
 	tests/data/bad/left-handed.cave \
 	tests/data/bad/misspelt-wall-key.cave \
 	tests/data/bad/model-truncated.scene \

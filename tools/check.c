@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum file_kind { FILE_LAYOUT, FILE_SCENE, FILE_UNKNOWN };
 
@@ -66,7 +67,13 @@ static void check_key(const struct layout *layout, struct gr_diag *diag)
 	if (layout->network.key_file && !path)
 		gr_diag_add(diag, GR_DIAG_ERROR, layout->path, 0, "network.key_file",
 			    "out of memory");
-	if (path)
+	/* A layout may be checked where its key does not belong; the daemons insist on it. */
+	if (path && access(path, F_OK) != 0 && errno == ENOENT)
+		gr_diag_add(diag, GR_DIAG_WARNING, layout->path, layout->network.key_file_line,
+			    "network.key_file",
+			    "%s is not on this machine, and no daemon starts without it; make one "
+			    "with grotto key, or copy the cluster's", path);
+	else if (path)
 		fdp_key_load(path, key, diag);
 	explicit_bzero(key, sizeof key);
 	free(path);
@@ -93,9 +100,11 @@ static void report_scene(const char *path, const struct scene_file *file,
 			 scene->dropped_index;
 
 	gr_diag_add(diag, GR_DIAG_NOTE, path, 0, NULL,
-		    "scene \"%s\": %zu triangles, %zu materials, %zu images, %zu lamp%s, "
-		    "%zu camera%s%s", file->name, scene->index_count / 3, scene->material_count,
-		    scene->image_count, file->lamp_count, file->lamp_count == 1 ? "" : "s",
+		    "scene \"%s\": %zu triangle%s, %zu material%s, %zu image%s, %zu lamp%s, "
+		    "%zu camera%s%s", file->name, scene->index_count / 3,
+		    scene->index_count == 3 ? "" : "s", scene->material_count,
+		    scene->material_count == 1 ? "" : "s", scene->image_count,
+		    scene->image_count == 1 ? "" : "s", file->lamp_count, file->lamp_count == 1 ? "" : "s",
 		    file->camera_count, file->camera_count == 1 ? "" : "s",
 		    scene->emissive ? ", emissive surfaces" : ", nothing emits");
 	gr_diag_add(diag, GR_DIAG_NOTE, path, 0, NULL,
@@ -158,8 +167,9 @@ int command_check(int argc, char **argv)
 		"grotto check FILE...",
 		"Loads cave layouts (.cave) and scenes (.scene) with every check that the daemons\n"
 		"make, and says what is wrong, where, and what would be right. For a layout it also\n"
-		"reads the key file and reports the gaps and overlaps of neighbouring walls in\n"
-		"millimetres; for a scene it imports the model and counts what is in it.\n"
+		"reads the key file (one that is not there is a warning) and reports the gaps and\n"
+		"overlaps of neighbouring walls in millimetres; for a scene it imports the model\n"
+		"and counts what is in it.\n"
 		"Exit status 2 when a file is refused.",
 		NULL, 0
 	};

@@ -239,6 +239,11 @@ int import_materials(struct import *import)
 	struct scene *scene = import->scene;
 	int result = GR_OK;
 
+	if (from->mNumMaterials < 1 && from->mNumMeshes < 1) {
+		gr_diag_add(import->diag, GR_DIAG_ERROR, import->path, 0, NULL,
+			    "there is no model in it: neither a mesh nor a material");
+		return GR_ERR_CONFIG;
+	}
 	if (from->mNumMaterials < 1 || from->mNumMaterials > IMPORT_MAX_MATERIALS) {
 		gr_diag_add(import->diag, GR_DIAG_ERROR, import->path, 0, NULL,
 			    "%u materials; 1 to %d are accepted", from->mNumMaterials,

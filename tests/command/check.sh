@@ -26,6 +26,21 @@ for file in "$srcdir"/scenes/*.scene "$srcdir"/tests/data/*.scene; do
 	said=$("$grotto" check "$file" 2>&1) || fail "$file: exit $?: $said"
 done
 
+# A key that is not here is a warning with its place and what to do; a bad one is an error.
+file=$srcdir/tests/data/key-missing.cave
+said=$("$grotto" check "$file" 2>&1) || fail "an absent key: exit $?: $said"
+for words in "warning: $file:21: network.key_file: /nowhere/cluster.key" "grotto key"; do
+	case $said in *"$words"*) ;; *) fail "an absent key: '$words' is not in: $said" ;; esac
+done
+sed 's,/nowhere/cluster.key,key,' "$file" >"$folder/keyed.cave"
+said=$("$grotto" check "$folder/keyed.cave" 2>&1) || fail "a key beside: exit $?: $said"
+chmod 644 "$folder/key"
+said=$("$grotto" check "$folder/keyed.cave" 2>&1)
+[ $? -eq 2 ] || fail "a key that others may read: $said"
+rm -f "$folder/key" && echo "no key" >"$folder/key" && chmod 600 "$folder/key"
+said=$("$grotto" check "$folder/keyed.cave" 2>&1)
+[ $? -eq 2 ] || fail "a key that is none: $said"
+
 count=0
 for file in "$srcdir"/tests/data/bad/*.cave "$srcdir"/tests/data/bad/*.scene \
 	    "$srcdir"/tests/data/bad/*.conf; do
@@ -46,7 +61,7 @@ for file in "$srcdir"/tests/data/bad/*.cave "$srcdir"/tests/data/bad/*.scene \
 	rm -f "check.expect.$$"
 	count=$((count + 1))
 done
-[ $count -ge 20 ] || fail "only $count faulty files in $srcdir/tests/data/bad"
+[ $count -ge 19 ] || fail "only $count faulty files in $srcdir/tests/data/bad"
 
 # All files are looked at, and one that is wrong decides.
 "$grotto" check "$srcdir/layouts/cave4.cave" "$srcdir/tests/data/bad/empty.cave" >/dev/null 2>&1

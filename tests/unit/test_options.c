@@ -185,7 +185,7 @@ static void test_text(void **state)
 	check_text(nul, sizeof nul - 1, "t:2: ", "NUL byte");
 	check_text("a = 1;\nb = [0, 1.5];\n", 21, "t:2: ", "write [0.0, 1.5, 0.0]");
 	check_text("a = 1;\nb = ;\n", 13, "t:2: ", "look for a missing");
-	check_text("a = 1;\na = 2;\n", 14, "t:2: ", "duplicate setting name");
+	check_text("a = 1;\na = 2;\n", 14, "t:2: a: ", "duplicate setting name; give each key once");
 	/* Brackets without end must come back as an error, not as a stack overflow. */
 	memset(deep, '(', 200000);
 	memcpy(deep, "a = ", 4);
