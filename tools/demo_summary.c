@@ -184,7 +184,7 @@ static struct json_object *summary_json(struct summary *summary)
 {
 	static const char *const members[] = {
 		"frames_complete", "frames_incomplete", "late", "evicted", "state_hash", "skew_us",
-		"commit_to_swap_sent_us", "commit_to_last_swap_us", "wire",
+		"commit_to_applied_us", "commit_to_swap_sent_us", "commit_to_last_swap_us", "wire",
 	};
 	const struct demo *demo = summary->demo;
 	struct json_object *out = json_object_new_object();
