@@ -48,6 +48,7 @@ grep -q '"torch":false' "$dir/status.json" || fail "the torch is not off"
 ask quit | grep -q '"ok":true' || fail "quit"
 ends "$master_pid" 0 master
 for n in $nodes; do eval "ends \$pid_$n 0 $n"; done
+says master "dropped [0-9]* more datagram" || fail "the other dropped datagrams are not told"
 echo "ok: control socket"
 
 # Before anything is opened: a fault of the layout is exit 2 with its line.
