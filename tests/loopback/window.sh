@@ -6,7 +6,7 @@ command -v xvfb-run >/dev/null || skip "xvfb-run is not installed"
 command -v xauth >/dev/null || skip "xauth is not installed"
 need_gl
 
-xvfb-run -a -s '-screen 0 1024x768x24' "$grotto" demo --window \
+xvfb-run -a -s '-noreset -screen 0 1024x768x24' "$grotto" demo --window \
 	--layout "$srcdir/tests/data/halves.cave" --scene "$srcdir/tests/data/loop.scene" \
 	--frames 5 --out "$work/out" >"$work/said" 2>&1 || {
 	fail "demo --window: exit $?"

@@ -5,4 +5,5 @@ if ! command -v xvfb-run >/dev/null 2>&1; then
 	echo "skipped: xvfb-run is not installed"
 	exit 77
 fi
-exec xvfb-run -a -s "-screen 0 640x480x24" "$program"
+# A server that starts anew after its last client turns the next one away meanwhile.
+exec xvfb-run -a -s "-noreset -screen 0 640x480x24" "$program"
