@@ -137,6 +137,95 @@ static void check_tone(struct options_reader *reader, struct scene_form_tone *fo
 	}
 }
 
+static void check_surface(struct options_reader *reader, struct scene_form_surface *entry)
+{
+	const struct scene_surface *s = &entry->surface;
+	bool phong = s->kind == SCENE_SURFACE_PHONG;
+
+	if ((int)s->kind == OPTION_ABSENT)
+		return;
+	if (s->kind == SCENE_SURFACE_MEASURED) {
+		if (!s->file || !*s->file)
+			options_fault(reader, GR_DIAG_ERROR, entry->at, "file",
+				      "missing; name the table of the measured material");
+		unused(reader, entry->at, "reflectance", "the table says what it reflects");
+	} else {
+		unused(reader, entry->at, "file", "only kind = \"measured\" has a table");
+	}
+	if (!phong) {
+		unused(reader, entry->at, "specular", "only for kind = \"phong\"");
+		unused(reader, entry->at, "shininess", "only for kind = \"phong\"");
+	} else if (isnan(s->shininess) || isnan(s->specular[0])) {
+		options_fault(reader, GR_DIAG_ERROR, entry->at, isnan(s->shininess) ? "shininess" : "specular",
+			      "missing; kind = \"phong\" needs specular and shininess");
+	}
+	if (phong && !isnan(s->reflectance[0]))
+		for (int i = 0; i < 3; i++)
+			if (s->reflectance[i] + s->specular[i] > 1 + 1e-6f) {
+				options_fault(reader, GR_DIAG_ERROR, entry->at, "specular",
+					      "reflectance and specular are %g together; at most 1 comes back",
+					      (double)s->reflectance[i] + (double)s->specular[i]);
+				break;
+			}
+	if (s->kind != SCENE_SURFACE_CONDUCTOR)
+		unused(reader, entry->at, "roughness", "only for kind = \"conductor\"");
+	else if (isnan(s->roughness))
+		options_fault(reader, GR_DIAG_ERROR, entry->at, "roughness",
+			      "missing; 0.01 is nearly a mirror, 1 rough");
+	if ((s->kind == SCENE_SURFACE_MIRROR || s->kind == SCENE_SURFACE_CONDUCTOR) &&
+	    isnan(s->reflectance[0]))
+		options_fault(reader, GR_DIAG_ERROR, entry->at, "reflectance",
+			      "missing; [0.9, 0.9, 0.9] is a good mirror");
+}
+
+static void check_surfaces(struct options_reader *reader, const struct scene_form *form)
+{
+	for (size_t i = 0; i < form->surface_count; i++) {
+		const char *name = form->surfaces[i].surface.material;
+
+		if (!form->surfaces[i].at)
+			continue;
+		check_surface(reader, &form->surfaces[i]);
+		for (size_t j = 0; j < i && name; j++)
+			if (form->surfaces[j].surface.material &&
+			    !strcmp(name, form->surfaces[j].surface.material))
+				options_fault(reader, GR_DIAG_ERROR, form->surfaces[i].at, "material",
+					      "\"%s\" is there twice; say all of it once", name);
+	}
+}
+
+static void check_environment(struct options_reader *reader, struct scene_form_environment *form)
+{
+	const struct scene_environment *e = &form->environment;
+
+	if ((int)e->kind == OPTION_ABSENT)
+		return;
+	if (e->kind == SCENE_ENVIRONMENT_IMAGE) {
+		if (!e->file || !*e->file)
+			options_fault(reader, GR_DIAG_ERROR, form->at, "file",
+				      "missing; name the picture of the environment");
+	} else {
+		unused(reader, form->at, "file", "only kind = \"image\" has a picture");
+		unused(reader, form->at, "scale", "only kind = \"image\" has a picture");
+		unused(reader, form->at, "heading_deg", "only kind = \"image\" has a picture");
+	}
+	if (e->kind != SCENE_ENVIRONMENT_CONSTANT)
+		unused(reader, form->at, "radiance", "only for kind = \"constant\"");
+}
+
+/* What a method cannot do is said before anything starts. */
+static void check_gi(struct options_reader *reader, const struct scene_form *form)
+{
+	bool surfels = form->gi.method == SCENE_GI_SURFELS || form->gi.method == SCENE_GI_PROBES;
+
+	if (surfels && form->medium.scattering_per_m > 0)
+		options_fault(reader, GR_DIAG_ERROR, form->medium.at, "scattering_per_m",
+			      "surfels and probes carry no light that the air scatters; gi.method = \"lpv\" does");
+	if (form->gi.method == SCENE_GI_LPV && form->gi.share == SCENE_SHARE_CLUSTER)
+		options_fault(reader, GR_DIAG_ERROR, form->gi.at, "share",
+			      "a lattice is not shared out; take gi.method = \"surfels\", or share = \"local\"");
+}
+
 void scene_check(struct options_reader *reader, struct scene_form *form)
 {
 	for (size_t i = 0; i < form->lamp_count; i++)
@@ -147,6 +236,9 @@ void scene_check(struct options_reader *reader, struct scene_form *form)
 			check_camera(reader, &form->cameras[i]);
 	check_names(reader, form);
 	check_tone(reader, &form->tone);
+	check_surfaces(reader, form);
+	check_environment(reader, &form->environment);
+	check_gi(reader, form);
 	if (form->near_m >= form->far_m)
 		options_fault(reader, GR_DIAG_ERROR, form->at, "far_m",
 			      "%g m is not beyond near_m, %g m", (double)form->far_m,

@@ -5,6 +5,7 @@
 #include "config/config_text.h"
 #include "config/scene_options.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,7 +19,8 @@ static struct scene_file *build(struct scene_form *form, const char *path)
 	file->path = strdup(path);
 	file->lamps = calloc(form->lamp_count + 1, sizeof *file->lamps);
 	file->cameras = calloc(form->camera_count + 1, sizeof *file->cameras);
-	if (!file->path || !file->lamps || !file->cameras) {
+	file->surfaces = calloc(form->surface_count + 1, sizeof *file->surfaces);
+	if (!file->path || !file->lamps || !file->cameras || !file->surfaces) {
 		scene_file_destroy(&file);
 		return NULL;
 	}
@@ -38,7 +40,24 @@ static struct scene_file *build(struct scene_form *form, const char *path)
 		file->cameras[file->camera_count].line =
 			(int)config_setting_source_line(form->cameras[file->camera_count].at);
 	}
+	for (; file->surface_count < form->surface_count; file->surface_count++) {
+		struct scene_form_surface *from = &form->surfaces[file->surface_count];
+		struct scene_surface *to = &file->surfaces[file->surface_count];
+
+		*to = from->surface;
+		to->line = (int)config_setting_source_line(from->at);
+		from->surface.material = from->surface.file = NULL;
+	}
+	file->environment = form->environment.environment;
+	form->environment.environment.file = NULL;
 	file->gi = form->gi.lpv.gi;
+	file->gi.spacing_m = form->gi.surfels.gi.spacing_m;
+	file->gi.links = form->gi.surfels.gi.links;
+	file->gi.gathers = form->gi.surfels.gi.gathers;
+	file->gi.taps = form->gi.surfels.gi.taps;
+	file->gi.probes = form->gi.surfels.gi.probes;
+	file->gi.share = (enum scene_gi_share)form->gi.share;
+	file->gi.budget_ms = form->gi.budget_ms;
 	file->gi.method = (enum scene_gi_method)form->gi.method;
 	file->absorption_per_m = form->medium.absorption_per_m;
 	file->scattering_per_m = form->medium.scattering_per_m;
@@ -106,13 +125,24 @@ void scene_file_destroy(struct scene_file **file)
 	free(f->model);
 	free(f->lamps);
 	free(f->cameras);
+	for (size_t i = 0; i < f->surface_count; i++) {
+		free(f->surfaces[i].material);
+		free(f->surfaces[i].file);
+	}
+	free(f->surfaces);
+	free(f->environment.file);
 	free(f);
 	*file = NULL;
 }
 
 char *scene_file_model_path(const struct scene_file *file)
 {
-	return config_text_beside(file->path, file->model);
+	return scene_file_beside(file, file->model);
+}
+
+char *scene_file_beside(const struct scene_file *file, const char *name)
+{
+	return config_text_beside(file->path, name);
 }
 
 int scene_file_find_camera(const struct scene_file *file, const char *name)
@@ -151,13 +181,49 @@ static void hash_lamp(struct canonical *c, const struct scene_lamp *lamp)
 	}
 }
 
+/* What is not given is NaN with any payload; it counts as one value. */
+static void hash_given(struct canonical *c, const float *values, unsigned count)
+{
+	bool given = !isnan(values[0]);
+
+	canonical_u64(c, given);
+	if (given)
+		canonical_floats(c, values, count);
+}
+
+/* The content of files counts where it is read (scene_content_hash). */
+static void hash_surface(struct canonical *c, const struct scene_surface *surface)
+{
+	canonical_string(c, surface->material);
+	canonical_u64(c, surface->kind);
+	canonical_u64(c, surface->sides);
+	hash_given(c, surface->reflectance, 3);
+	hash_given(c, surface->specular, 3);
+	hash_given(c, &surface->shininess, 1);
+	hash_given(c, &surface->roughness, 1);
+	hash_given(c, surface->emission, 3);
+}
+
+static void hash_environment(struct canonical *c, const struct scene_environment *e)
+{
+	canonical_u64(c, e->kind);
+	if (e->kind == SCENE_ENVIRONMENT_CONSTANT) {
+		canonical_floats(c, e->radiance, 3);
+	} else if (e->kind == SCENE_ENVIRONMENT_IMAGE) {
+		canonical_floats(c, &e->scale, 1);
+		canonical_floats(c, &e->heading_rad, 1);
+	}
+	if (e->kind != SCENE_ENVIRONMENT_NONE)
+		canonical_u64(c, e->upper_only);
+}
+
 void scene_file_hash(const struct scene_file *file, uint8_t out[32])
 {
 	const struct scene_gi *gi = &file->gi;
 	const struct scene_tone *tone = &file->tone;
 	struct canonical c;
 
-	canonical_start(&c, "grotto scene 1");
+	canonical_start(&c, "grotto scene 2");
 	canonical_floats(&c, &file->model_scale, 1);
 	canonical_floats(&c, &file->emission_scale, 1);
 	canonical_u64(&c, file->double_sided);
@@ -172,6 +238,17 @@ void scene_file_hash(const struct scene_file *file, uint8_t out[32])
 	canonical_u64(&c, (uint64_t)gi->rsm_pixels);
 	canonical_u64(&c, (uint64_t)gi->link_rays);
 	canonical_floats(&c, gi->albedo_override, 3);
+	canonical_u64(&c, gi->share);
+	canonical_floats(&c, &gi->budget_ms, 1);
+	canonical_floats(&c, &gi->spacing_m, 1);
+	canonical_u64(&c, (uint64_t)gi->links);
+	canonical_u64(&c, (uint64_t)gi->gathers);
+	canonical_u64(&c, (uint64_t)gi->taps);
+	canonical_u64(&c, (uint64_t)gi->probes);
+	canonical_u64(&c, file->surface_count);
+	for (size_t i = 0; i < file->surface_count; i++)
+		hash_surface(&c, &file->surfaces[i]);
+	hash_environment(&c, &file->environment);
 	canonical_floats(&c, &file->absorption_per_m, 1);
 	canonical_floats(&c, &file->scattering_per_m, 1);
 	canonical_floats(&c, file->background, 3);

@@ -21,6 +21,7 @@
 #define SCENE_NAME_MAX 32
 #define SCENE_MAX_LAMPS 16
 #define SCENE_MAX_CAMERAS 32
+#define SCENE_MAX_MATERIALS 256 /* entries of `materials` */
 
 enum scene_lamp_kind { SCENE_LAMP_SPOT, SCENE_LAMP_POINT, SCENE_LAMP_DIRECTIONAL };
 
@@ -57,11 +58,52 @@ struct scene_camera {
 	int line;
 };
 
-enum scene_gi_method { SCENE_GI_NONE, SCENE_GI_LPV };
+/*
+ * What the scene file says of a material of the model, instead of the model.
+ * Vectors and numbers that are not given are NaN (the first component of a
+ * vector): what the model says stays.
+ */
+enum scene_surface_kind {
+	SCENE_SURFACE_DIFFUSE,   /* Lambert: reflectance */
+	SCENE_SURFACE_PHONG,     /* Lambert and normalised Blinn-Phong: reflectance, specular, shininess */
+	SCENE_SURFACE_MIRROR,    /* perfect: reflectance, no Fresnel */
+	SCENE_SURFACE_CONDUCTOR, /* rough: GGX, alpha = roughness^2, separable Smith, reflectance, no Fresnel */
+	SCENE_SURFACE_MEASURED,  /* a table of a goniometer: file */
+	SCENE_SURFACE_AS_MODEL,
+};
+enum scene_sides { SCENE_SIDES_AS_MODEL, SCENE_SIDES_ONE, SCENE_SIDES_TWO };
+
+struct scene_surface {
+	char *material; /* its name in the model */
+	enum scene_surface_kind kind;
+	enum scene_sides sides;
+	vec3 reflectance, specular; /* 0..1 */
+	float roughness, shininess;
+	vec3 emission; /* W/(m^2 sr); emission_scale does not apply */
+	char *file;    /* NULL, absolute, or beside the scene file */
+	int line;
+};
+
+/* What lights the scene from all around, and is seen where no surface is. */
+enum scene_environment_kind { SCENE_ENVIRONMENT_NONE, SCENE_ENVIRONMENT_CONSTANT, SCENE_ENVIRONMENT_IMAGE };
+struct scene_environment {
+	enum scene_environment_kind kind;
+	vec3 radiance;     /* constant: W/(m^2 sr) */
+	char *file;        /* image: OpenEXR, latitude-longitude (renderer/scene/environment.h) */
+	float scale;       /* image: W/(m^2 sr) of a pixel that is 1 */
+	float heading_rad; /* image: turned about +Y */
+	bool upper_only;   /* nothing comes from directions with y <= 0 */
+};
+
+enum scene_gi_method { SCENE_GI_NONE, SCENE_GI_LPV, SCENE_GI_SURFELS, SCENE_GI_PROBES, SCENE_GI_AUTO };
+/* Whether each node computes all of the light, or its share of it (docs/architecture.md). */
+enum scene_gi_share { SCENE_SHARE_LOCAL, SCENE_SHARE_CLUSTER };
 enum scene_lpv_mode { SCENE_LPV_REPAIRED, SCENE_LPV_THESIS };
 
 struct scene_gi {
 	enum scene_gi_method method;
+	enum scene_gi_share share;
+	float budget_ms; /* auto: what the light may take a frame */
 	enum scene_lpv_mode lpv_mode;
 	int lattice;          /* cells along the longest side of the scene: 8..128 */
 	int steps;            /* propagation steps a frame */
@@ -69,6 +111,12 @@ struct scene_gi {
 	int rsm_pixels;       /* side of a reflective shadow map */
 	int link_rays;        /* rays per link for its transmittance */
 	vec3 albedo_override; /* negative: the materials' own */
+	/* surfels and probes */
+	float spacing_m;      /* of the surfels; 0: from the scene's area */
+	int links;            /* of a surfel: 16..4096 */
+	int gathers;          /* a frame: 1..16 */
+	int taps;             /* of direct light on a surfel: 16..64 */
+	int probes;           /* cells of the probe grid along the longest side of the scene: 1..64 */
 };
 
 enum scene_curve { SCENE_CURVE_LINEAR, SCENE_CURVE_REINHARD };
@@ -92,9 +140,12 @@ struct scene_file {
 	struct scene_camera *cameras;
 	size_t camera_count;
 	struct scene_gi gi;
+	struct scene_surface *surfaces;
+	size_t surface_count;
+	struct scene_environment environment;
 	float absorption_per_m; /* sigma_a, 1/m: homogeneous medium */
 	float scattering_per_m; /* sigma_s, 1/m */
-	vec3 background;        /* radiance where no surface is */
+	vec3 background;        /* radiance where no surface is; lights nothing. An environment replaces it */
 	struct scene_tone tone;
 	float near_m, far_m;
 	int shadow_pixels;
@@ -113,6 +164,8 @@ int scene_file_parse(const char *text, size_t len, const char *path, struct scen
 void scene_file_destroy(struct scene_file **file);
 /* The model's path as it can be opened. Caller frees. */
 char *scene_file_model_path(const struct scene_file *file);
+/* Any file that it names, likewise. Caller frees. */
+char *scene_file_beside(const struct scene_file *file, const char *name);
 /* Index of the camera of that name, or -1. */
 int scene_file_find_camera(const struct scene_file *file, const char *name);
 /* Exponent of the encoding: end-to-end gamma / display gamma (seed 004, before table 3.1). */

@@ -4,7 +4,11 @@
 
 static const char *const kind_choices[] = { "spot", "point", "directional", NULL };
 static const char *const mount_choices[] = { "fixed", "wand", "head", "orbit", NULL };
-static const char *const method_choices[] = { "none", "lpv", NULL };
+static const char *const method_choices[] = { "none", "lpv", "surfels", "probes", "auto", NULL };
+static const char *const share_choices[] = { "local", "cluster", NULL };
+static const char *const surface_choices[] = { "diffuse", "phong", "mirror", "conductor", "measured", "model", NULL };
+static const char *const sides_choices[] = { "model", "one", "two", NULL };
+static const char *const environment_choices[] = { "none", "constant", "image", NULL };
 static const char *const mode_choices[] = { "repaired", "thesis", NULL };
 static const char *const curve_choices[] = { "linear", "reinhard", NULL };
 static const char *const ambient_choices[] = { "dark", "dim", "light", NULL };
@@ -104,11 +108,85 @@ static const struct option lpv_options[] = {
 	{ .key = NULL },
 };
 
+static const struct option surfels_options[] = {
+	{ .key = "spacing_m", .type = OPTION_FLOAT, .min = 0, .max = 1000, .unit = "m",
+	  .standard = "0", AT(scene_form_surfels, gi.spacing_m),
+	  .help = "distance between surfels; 0 takes one that gives some thousands of them" },
+	{ .key = "links", .type = OPTION_INT, .min = 16, .max = 4096, .standard = "256",
+	  AT(scene_form_surfels, gi.links),
+	  .help = "rays that find what lights a surfel; twice as many halve the square of the noise" },
+	{ .key = "gathers", .type = OPTION_INT, .min = 1, .max = 16, .standard = "1",
+	  AT(scene_form_surfels, gi.gathers),
+	  .help = "bounces that are added a frame while the light changes" },
+	{ .key = "taps", .type = OPTION_INT, .min = 16, .max = 64, .standard = "16",
+	  AT(scene_form_surfels, gi.taps),
+	  .help = "points of a surfel at which the lamps' light is looked up" },
+	{ .key = "probes", .type = OPTION_INT, .min = 1, .max = 64, .unit = "cells",
+	  .standard = "8", AT(scene_form_surfels, gi.probes),
+	  .help = "probes for what moves: cells of their grid along the longest side of the scene" },
+	{ .key = NULL },
+};
+
 static const struct option gi_options[] = {
 	{ .key = "method", .type = OPTION_CHOICE, .choices = method_choices, .standard = "lpv",
-	  AT(scene_form_gi, method), .help = "how indirect light is computed" },
+	  AT(scene_form_gi, method),
+	  .help = "how indirect light is computed; auto chooses from what the scene holds and from budget_ms" },
+	{ .key = "share", .type = OPTION_CHOICE, .choices = share_choices, .standard = "local",
+	  AT(scene_form_gi, share),
+	  .help = "surfels and probes: each node computes all of the light, or a part of it for all" },
+	{ .key = "budget_ms", .type = OPTION_FLOAT, .min = 0.1, .max = 10000, .unit = "ms",
+	  .standard = "8", AT(scene_form_gi, budget_ms),
+	  .help = "auto: what indirect light may take of a frame" },
+	{ .key = "surfels", .type = OPTION_GROUP, AT(scene_form_gi, surfels), .group = surfels_options,
+	  .help = "settings of surfels and probes" },
 	{ .key = "lpv", .type = OPTION_GROUP, AT(scene_form_gi, lpv), .group = lpv_options,
 	  .help = "settings of light propagation volumes" },
+	{ .key = NULL },
+};
+
+#define AT_SURFACE(member) AT(scene_form_surface, surface.member)
+
+static const struct option surface_options[] = {
+	{ .key = "material", .type = OPTION_STRING, .required = true, AT_SURFACE(material),
+	  .help = "the material's name in the model" },
+	{ .key = "kind", .type = OPTION_CHOICE, .choices = surface_choices, .standard = "model",
+	  AT_SURFACE(kind),
+	  .help = "what it reflects: Lambert; Lambert and Blinn-Phong; a perfect mirror; a rough conductor (GGX, alpha = roughness^2, separable Smith, no Fresnel); a measured table; or as the model says" },
+	{ .key = "sides", .type = OPTION_CHOICE, .choices = sides_choices, .standard = "model",
+	  AT_SURFACE(sides), .help = "whether the back reflects and emits, too" },
+	{ .key = "reflectance", .type = OPTION_FLOAT, .count = 3, .min = 0, .max = 1,
+	  AT_SURFACE(reflectance), .help = "diffuse, or of the mirror or conductor; instead of the model's colour and texture" },
+	{ .key = "specular", .type = OPTION_FLOAT, .count = 3, .min = 0, .max = 1,
+	  AT_SURFACE(specular), .help = "phong: reflectance of the highlight" },
+	{ .key = "shininess", .type = OPTION_FLOAT, .min = 0, .max = 16384, AT_SURFACE(shininess),
+	  .help = "phong: exponent" },
+	{ .key = "roughness", .type = OPTION_FLOAT, .min = 0.01, .max = 1, AT_SURFACE(roughness),
+	  .help = "conductor: 0.01 nearly a mirror, 1 rough" },
+	{ .key = "emission", .type = OPTION_FLOAT, .count = 3, .min = 0, .max = 1e9,
+	  .unit = "W/(m2 sr)", AT_SURFACE(emission),
+	  .help = "radiance that it emits, instead of the model's; emission_scale does not apply" },
+	{ .key = "file", .type = OPTION_STRING, AT_SURFACE(file),
+	  .help = "measured: the table, as the Cornell goniometer's text files" },
+	{ .key = NULL },
+};
+
+#define AT_ENVIRONMENT(member) AT(scene_form_environment, environment.member)
+
+static const struct option environment_options[] = {
+	{ .key = "kind", .type = OPTION_CHOICE, .choices = environment_choices, .standard = "none",
+	  AT_ENVIRONMENT(kind), .help = "nothing, the same from everywhere, or a picture" },
+	{ .key = "radiance", .type = OPTION_FLOAT, .count = 3, .min = 0, .max = 1e9,
+	  .unit = "W/(m2 sr)", .standard = "0 0 0", AT_ENVIRONMENT(radiance),
+	  .help = "constant: what comes from every direction" },
+	{ .key = "file", .type = OPTION_STRING, AT_ENVIRONMENT(file),
+	  .help = "image: OpenEXR, latitude-longitude: the middle is +X, three quarters along +Z, the top row +Y" },
+	{ .key = "scale", .type = OPTION_FLOAT, .min = 0, .max = 1e9, .standard = "1",
+	  AT_ENVIRONMENT(scale), .help = "image: radiance in W/(m2 sr) of a pixel that is 1" },
+	{ .key = "heading_deg", .type = OPTION_FLOAT, .min = -360, .max = 360, .unit = "deg",
+	  .scale = RAD_PER_DEG, .standard = "0", AT_ENVIRONMENT(heading_rad),
+	  .help = "image: turned about +Y, counter-clockwise from above" },
+	{ .key = "upper_only", .type = OPTION_BOOL, .standard = "false", AT_ENVIRONMENT(upper_only),
+	  .help = "nothing comes from below the horizon" },
 	{ .key = NULL },
 };
 
@@ -180,6 +258,12 @@ const struct option scene_options[] = {
 	  AT(scene_form, cameras), .size = sizeof(struct scene_form_camera),
 	  .count_offset = offsetof(struct scene_form, camera_count), .group = camera_options,
 	  .help = "the list of cameras for stills" },
+	{ .key = "materials", .type = OPTION_LIST, .count = SCENE_MAX_MATERIALS,
+	  AT(scene_form, surfaces), .size = sizeof(struct scene_form_surface),
+	  .count_offset = offsetof(struct scene_form, surface_count), .group = surface_options,
+	  .help = "the list of materials that are not as the model says" },
+	{ .key = "environment", .type = OPTION_GROUP, AT(scene_form, environment),
+	  .group = environment_options, .help = "light from all around; replaces background" },
 	{ .key = "gi", .type = OPTION_GROUP, AT(scene_form, gi), .group = gi_options,
 	  .help = "indirect light" },
 	{ .key = "medium", .type = OPTION_GROUP, AT(scene_form, medium), .group = medium_options,

@@ -18,15 +18,33 @@ struct scene_form_camera {
 	struct scene_camera camera;
 };
 
+struct scene_form_surface {
+	const config_setting_t *at;
+	struct scene_surface surface; /* strings owned */
+};
+
+struct scene_form_environment {
+	const config_setting_t *at;
+	struct scene_environment environment; /* strings owned */
+};
+
+/* Both are all of struct scene_gi; each fills its own part. */
+struct scene_form_surfels {
+	const config_setting_t *at;
+	struct scene_gi gi;
+};
+
 struct scene_form_lpv {
 	const config_setting_t *at;
-	struct scene_gi gi; /* all but method */
+	struct scene_gi gi;
 };
 
 struct scene_form_gi {
 	const config_setting_t *at;
-	int method;
+	int method, share;
+	float budget_ms;
 	struct scene_form_lpv lpv;
+	struct scene_form_surfels surfels;
 };
 
 struct scene_form_medium {
@@ -59,6 +77,9 @@ struct scene_form {
 	size_t lamp_count;
 	struct scene_form_camera *cameras;
 	size_t camera_count;
+	struct scene_form_surface *surfaces;
+	size_t surface_count;
+	struct scene_form_environment environment;
 	struct scene_form_gi gi;
 	struct scene_form_medium medium;
 	struct scene_form_tone tone;

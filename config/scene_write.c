@@ -21,15 +21,25 @@ static void fill_lamp(const struct scene_lamp *from, struct scene_form_lamp *to)
 		to->lamp.orbit_center[0] = to->lamp.orbit_radius_m = to->lamp.orbit_period_s = NAN;
 }
 
+static void fill_environment(const struct scene_environment *from, struct scene_environment *to)
+{
+	*to = *from;
+	if (from->kind != SCENE_ENVIRONMENT_CONSTANT)
+		to->radiance[0] = NAN;
+	if (from->kind != SCENE_ENVIRONMENT_IMAGE)
+		to->scale = to->heading_rad = NAN;
+}
+
 int scene_file_write(FILE *out, const struct scene_file *file)
 {
 	/* Strings are borrowed: the form is never given to options_free. */
 	struct scene_form form = { 0 };
 	struct scene_form_lamp *lamps = calloc(file->lamp_count + 1, sizeof *lamps);
 	struct scene_form_camera *cameras = calloc(file->camera_count + 1, sizeof *cameras);
+	struct scene_form_surface *surfaces = calloc(file->surface_count + 1, sizeof *surfaces);
 	int result = GR_ERR_NOMEM;
 
-	if (!lamps || !cameras)
+	if (!lamps || !cameras || !surfaces)
 		goto out;
 	memcpy(form.name, file->name, sizeof form.name);
 	form.model = file->model;
@@ -48,8 +58,16 @@ int scene_file_write(FILE *out, const struct scene_file *file)
 	form.camera_count = file->camera_count;
 	for (size_t i = 0; i < file->camera_count; i++)
 		cameras[i].camera = file->cameras[i];
+	form.surfaces = surfaces;
+	form.surface_count = file->surface_count;
+	for (size_t i = 0; i < file->surface_count; i++)
+		surfaces[i].surface = file->surfaces[i];
+	fill_environment(&file->environment, &form.environment.environment);
 	form.gi.method = (int)file->gi.method;
+	form.gi.share = (int)file->gi.share;
+	form.gi.budget_ms = file->gi.budget_ms;
 	form.gi.lpv.gi = file->gi;
+	form.gi.surfels.gi = file->gi;
 	form.medium.absorption_per_m = file->absorption_per_m;
 	form.medium.scattering_per_m = file->scattering_per_m;
 	form.tone.tone = file->tone;
@@ -63,5 +81,6 @@ int scene_file_write(FILE *out, const struct scene_file *file)
 out:
 	free(lamps);
 	free(cameras);
+	free(surfaces);
 	return result;
 }

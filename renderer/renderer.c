@@ -67,6 +67,8 @@ static bool draw_shadow(struct renderer *r, const struct render_frame *frame, bo
 /* The light field. *changed is set when it is another one. */
 static int update_gi(struct renderer *r, const struct render_frame *frame, bool *changed)
 {
+	unsigned needs = r->gi ? r->gi->ops->needs : 0;
+	struct gi_light light = { .version = r->light_version };
 	struct gi_stats gi;
 	int result;
 
@@ -77,8 +79,16 @@ static int update_gi(struct renderer *r, const struct render_frame *frame, bool 
 	r->gi_on = frame->gi_on;
 	if (!frame->gi_on)
 		return GR_OK;
+	if (*changed)
+		light.version = ++r->light_version;
+	if (r->rsm && needs & GI_NEEDS_RSM)
+		light.rsm = rsm_frame(r->rsm);
+	if (r->shadow && needs & GI_NEEDS_LAMPS) {
+		shadow_bind(r->shadow);
+		light.lamps = true;
+	}
 	timers_begin(r->timers, STAGE_GI, "gi");
-	result = r->gi->ops->update(r->gi, frame, rsm_frame(r->rsm));
+	result = r->gi->ops->update(r->gi, frame, &light);
 	timers_end(r->timers, STAGE_GI);
 	if (result < 0)
 		return result;

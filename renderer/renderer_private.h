@@ -48,6 +48,7 @@ struct renderer {
 	bool fresh; /* nothing drawn yet */
 	float absorption, scattering;
 	bool gi_on;
+	uint64_t light_version; /* grows when lamps or medium changed */
 	struct tone_values tone_values;
 
 	struct renderer_stats stats;

@@ -40,19 +40,60 @@ struct rsm_set {
 struct gi_stats {
 	bool ran;             /* something was computed this frame */
 	bool steady;          /* nothing changes any more; work has stopped */
-	int steps;            /* propagation steps done this frame */
+	int steps;            /* propagation steps or gathers done this frame */
 	uint64_t nonfinite;   /* cells found NaN or Inf: an error, reported once a second */
 	double residual;      /* largest change since the frame before (after a restart: of the last step) over the largest value, some frames old; -1 unknown */
 };
 
+/* What a method wants to be given every frame; what none wants is not drawn. */
+enum gi_need {
+	GI_NEEDS_RSM = 1,   /* reflective shadow maps */
+	GI_NEEDS_LAMPS = 2, /* the lamps' values and shadow maps bound as for shading (renderer/view/blocks.h) */
+};
+struct gi_light {
+	const struct rsm_set *rsm; /* NULL without GI_NEEDS_RSM, or without any light */
+	bool lamps;                /* bound, with GI_NEEDS_LAMPS; false: the scene has none */
+	uint64_t version;          /* grows when lamps or medium changed */
+};
+
 struct gi_method;
+/*
+ * Work that the nodes share out: each computes its slice in update() and hands
+ * it on; what of the others arrived before the next update() is used there. So
+ * light is a frame late, and the same bytes on every wall.
+ */
+struct gi_share_ops {
+	/*
+	 * From the next update() on this node computes slice `index` of `count`.
+	 * count 1: all of it. Cheap when nothing changes.
+	 */
+	int (*set)(struct gi_method *method, unsigned index, unsigned count);
+	/* Longest slice in bytes at that count. */
+	size_t (*bytes_max)(const struct gi_method *method, unsigned count);
+	/*
+	 * This node's slice of the last update(), after renderer_finished. GR_OK;
+	 * GR_NOTHING with *len 0 when it is as the others have it.
+	 */
+	int (*take)(struct gi_method *method, uint8_t *bytes, size_t size, size_t *len);
+	/*
+	 * A slice of another node; it counts from the next update() on. GR_OK,
+	 * GR_ERR_FORMAT for bytes that are none: nothing changes then.
+	 */
+	int (*put)(struct gi_method *method, const uint8_t *bytes, size_t len);
+};
+
 struct gi_method_ops {
 	const char *name;
+	unsigned needs; /* enum gi_need */
+	const struct gi_share_ops *share; /* NULL: each node computes all */
 	/* Why it runs, for the node's log. */
 	const char *(*describe)(const struct gi_method *method);
-	/* Injects, propagates; frame->gi_epoch changed: from zero to the steady state. */
+	/*
+	 * Takes the frame's light and moves on; frame->gi_epoch changed: from zero to
+	 * the steady state, on this node alone.
+	 */
 	int (*update)(struct gi_method *method, const struct render_frame *frame,
-		      const struct rsm_set *rsm);
+		      const struct gi_light *light);
 	/* Binds what shader_name's function reads: texture units and buffers from 8 on. */
 	void (*bind)(const struct gi_method *method);
 	/*

@@ -9,8 +9,9 @@ RENDERER_SOURCES += \
 	renderer/gi/lpv_cpu.c renderer/gi/lpv_cpu.h renderer/gi/lpv_thesis.c \
 	renderer/gi/sectors.c renderer/gi/sectors.h \
 	renderer/gi/surface.c renderer/gi/surface.h \
+	renderer/gi/surfel_set.h \
 	renderer/gi/transfer.c renderer/gi/transfer.h \
-	renderer/trace/rays.c renderer/trace/rays.h
+	renderer/trace/rays.c renderer/trace/rays.h renderer/trace/reference.h
 
 SHADERS += \
 	renderer/shaders/gi_lpv.glsl renderer/shaders/gi_probe.comp renderer/shaders/gi_lpv_thesis.glsl renderer/shaders/lpv_check.comp \

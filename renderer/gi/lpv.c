@@ -273,8 +273,9 @@ static void thesis_frame(struct lpv *lpv, const struct render_frame *frame, bool
 }
 
 static int update(struct gi_method *method, const struct render_frame *frame,
-		  const struct rsm_set *rsm)
+		  const struct gi_light *light)
 {
+	const struct rsm_set *rsm = light->rsm;
 	struct lpv *lpv = lpv_of(method);
 	bool restart = !lpv->started || frame->gi_epoch != lpv->epoch;
 	bool medium = frame->absorption_per_m != lpv->absorption ||
@@ -388,6 +389,7 @@ static void destroy(struct gi_method *method)
 static const struct gi_method_ops repaired_ops = {
 	.name = "lpv",
 	.describe = describe,
+	.needs = GI_NEEDS_RSM,
 	.update = update,
 	.bind = bind,
 	.shader_name = "gi_lpv.glsl",
@@ -399,6 +401,7 @@ static const struct gi_method_ops repaired_ops = {
 static const struct gi_method_ops thesis_ops = {
 	.name = "lpv (thesis)",
 	.describe = describe,
+	.needs = GI_NEEDS_RSM,
 	.update = update,
 	.bind = bind,
 	.shader_name = "gi_lpv_thesis.glsl",

@@ -26,8 +26,22 @@ struct scene_vertex {
  *   f = diffuse/pi + (shininess + 8)/(8 pi) specular cos^shininess(theta_h)
  * mapped from glTF metallic/roughness as docs/models.md says.
  */
+enum scene_material_kind {
+	MATERIAL_PHONG,     /* the above */
+	MATERIAL_MIRROR,    /* perfect: radiance times specular, no Fresnel */
+	MATERIAL_CONDUCTOR, /* GGX of alpha, separable Smith, times specular, no Fresnel */
+	MATERIAL_MEASURED,  /* a table; diffuse is its reflectance as a Lambert one, for what knows no tables */
+};
+
+/*
+ * Of the last three kinds the renderer's own shading has no more than what
+ * diffuse, specular and shininess say: a highlight of the same width.
+ */
 struct scene_material {
 	char name[64];
+	enum scene_material_kind kind;
+	float alpha;       /* conductor: 1e-4..1 */
+	int table;         /* measured: index into tables */
 	float diffuse[3];  /* reflectance 0..1 */
 	float specular[3]; /* reflectance 0..1; diffuse + specular <= 1 */
 	float shininess;   /* exponent m >= 0 */
@@ -39,6 +53,9 @@ struct scene_material {
 };
 
 /* Decoded to 8 bit RGBA; row 0 is the top (uv v = 0, as in glTF). */
+struct brdf_table;
+struct environment;
+
 struct scene_image {
 	char *name;
 	int width, height;
@@ -62,6 +79,9 @@ struct scene {
 	size_t material_count;
 	struct scene_image *images;
 	size_t image_count;
+	struct brdf_table **tables; /* renderer/scene/brdf_table.h */
+	size_t table_count;
+	struct environment *environment; /* renderer/scene/environment.h; NULL: dark */
 	float min[3], max[3]; /* bounds of what is left */
 	size_t dropped_nonfinite, dropped_degenerate, dropped_index;
 	bool emissive;     /* some triangle emits */

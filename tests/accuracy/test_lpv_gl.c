@@ -46,7 +46,9 @@ static void end(struct setup *s)
 
 static void frame(struct setup *s)
 {
-	assert_true(s->method->ops->update(s->method, &s->frame, &s->maps) >= GR_OK);
+	const struct gi_light light = { .rsm = &s->maps };
+
+	assert_true(s->method->ops->update(s->method, &s->frame, &light) >= GR_OK);
 	s->frame.frame++;
 }
 

@@ -25,7 +25,15 @@ static const char base[] =
 	"cameras = ( { name = \"door\"; position = [0.0, 1.6, 3.0];\n"
 	"	target = [0.0, 1.2, 0.0]; vfov_deg = 45.0; pixels = [320, 240]; } );\n"
 	"gi = { method = \"lpv\"; lpv = { mode = \"thesis\"; lattice = 24; steps = 12; incremental = 0.9;\n"
-	"	rsm_pixels = 64; link_rays = 77; albedo_override = [0.5, 0.4, 0.3]; }; };\n"
+	"	rsm_pixels = 64; link_rays = 77; albedo_override = [0.5, 0.4, 0.3]; };\n"
+	"	budget_ms = 3.5; surfels = { spacing_m = 0.2; links = 512; gathers = 2; taps = 32; probes = 5; }; };\n"
+	"materials = ( { material = \"tall box\"; kind = \"mirror\"; reflectance = [0.9, 0.8, 0.7]; },\n"
+	"	{ material = \"back\"; kind = \"conductor\"; reflectance = [0.5, 0.5, 0.5]; roughness = 0.3; },\n"
+	"	{ material = \"wood\"; kind = \"phong\"; reflectance = [0.5, 0.4, 0.3]; specular = [0.1, 0.1, 0.1];\n"
+	"	  shininess = 40.0; sides = \"two\"; },\n"
+	"	{ material = \"paint\"; kind = \"measured\"; file = \"paint.brdf\"; },\n"
+	"	{ material = \"tube\"; emission = [17.0, 12.0, 4.0]; } );\n"
+	"environment = { kind = \"image\"; file = \"sky.exr\"; scale = 2.0; heading_deg = 30.0; upper_only = true; };\n"
 	"medium = { absorption_per_m = 0.01; scattering_per_m = 0.02; };\n"
 	"tone = { curve = \"linear\"; exposure = 0.5; ambient = \"dark\"; gamma_display = 2.5; };\n"
 	"room = { position = [1.0, 0.0, -2.0]; heading_deg = 90.0; };\n"
@@ -57,6 +65,21 @@ static const struct fault faults[] = {
 	  "lamps[0].intensity", "-8 is outside 0 to 1000000000 W/sr", 1 },
 	{ "intensity = [10.0, 9.0, 8.0]", "intensity = [10.0, 9.0, 1e400]", "intensity = [10.0",
 	  "lamps[0].intensity", "is not a finite number", 1 },
+	{ "method = \"lpv\";", "method = \"lpv\"; share = \"cluster\";", "gi =", "gi.share",
+	  "a lattice is not shared out", 1 },
+	{ "method = \"lpv\"", "method = \"surfels\"", "medium =", "medium.scattering_per_m",
+	  "surfels and probes carry no light that the air scatters", 1 },
+	{ "kind = \"mirror\"; reflectance = [0.9, 0.8, 0.7];", "kind = \"mirror\";", "materials =",
+	  "materials[0].reflectance", "is a good mirror", 1 },
+	{ "material = \"back\"", "material = \"tall box\"", "{ material = \"tall box\"; kind = \"conductor",
+	  "materials[1].material", "is there twice", 1 },
+	{ "roughness = 0.3; ", "", "{ material = \"back\"", "materials[1].roughness", "missing", 1 },
+	{ "specular = [0.1, 0.1, 0.1];", "specular = [0.6, 0.1, 0.1];", "{ material = \"wood\"",
+	  "materials[2].specular", "at most 1 comes back", 1 },
+	{ "file = \"paint.brdf\";", "", "{ material = \"paint\"", "materials[3].file", "missing", 1 },
+	{ "file = \"sky.exr\";", "", "environment =", "environment.file", "missing", 1 },
+	{ "kind = \"image\"; file = \"sky.exr\"", "radiance = [1.0, 1.0, 1.0]; kind = \"image\"; file = \"sky.exr\"",
+	  "environment =", "environment.radiance", "not used", 0 },
 	{ "lattice = 24", "lattice = 129", "lattice = 129", "gi.lpv.lattice",
 	  "129 is outside 8 to 128 cells", 1 },
 	{ "mode = \"thesis\"", "mode = \"theses\"", "mode =", "gi.lpv.mode",

@@ -100,6 +100,7 @@ static int run_rounds(struct gi_method *const method[2], struct cost cost[2])
 static int error_of(struct gi_method *method, const struct scene_file *file, struct rsm_set *maps,
 		    int frames, struct truth_error *out)
 {
+	const struct gi_light light = { .rsm = maps };
 	struct bench_probe *probe;
 	struct render_frame frame;
 	int result = bench_probe_create(&probe, method);
@@ -111,7 +112,7 @@ static int error_of(struct gi_method *method, const struct scene_file *file, str
 	for (int c = 0; c < 3; c++)
 		frame.lamps[0].intensity[c] = bench_spot().intensity[c];
 	for (int i = 0; i < frames; i++, frame.frame++)
-		method->ops->update(method, &frame, maps);
+		method->ops->update(method, &frame, &light);
 	bench_probe_run(probe, method, samples, sample_count, found);
 	bench_probe_destroy(&probe);
 	*out = truth_compare(samples, found, sample_count);
