@@ -14,7 +14,7 @@
  * seed 003's transfer vectors with surfaces for a sky.)
  *
  * Light of emissive surfaces and of the environment does not change; E_fixed
- * is traced once. So links carry reflected light only. A link ends where it
+ * is traced once (fixed_emissive + fixed_other). So links carry reflected light only. A link ends where it
  * meets a diffuse surface; off mirrors and glossy ones it goes on.
  *
  * Not thread safe.
@@ -81,7 +81,13 @@ struct surfel_set {
 	struct surfel *surfels;
 	float *area;         /* m^2, of each patch */
 	float (*albedo)[3];  /* diffuse reflectance, mean over the patch */
-	float (*fixed)[3];   /* E_fixed, W/m^2 */
+	/*
+	 * E_fixed, W/m^2, in two: what emissive surfaces send straight here, which
+	 * shading adds by itself, and all else that does not change (the
+	 * environment; emissive surfaces by way of mirrors), which shading takes
+	 * from the surfels together with E_indirect.
+	 */
+	float (*fixed_emissive)[3], (*fixed_other)[3];
 	uint32_t *links;     /* count x links_each: a surfel, or SURFEL_NONE */
 	struct surfel_tap *taps; /* count x taps_each */
 	struct surfel_grid grid;
