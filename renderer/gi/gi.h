@@ -59,8 +59,8 @@ struct gi_light {
 struct gi_method;
 /*
  * Work that the nodes share out: each computes its slice in update() and hands
- * it on; what of the others arrived before the next update() is used there. So
- * light is a frame late, and the same bytes on every wall.
+ * it on; what arrived before the next update() is used there, its own slice
+ * too. So light is a frame late, and the same bytes on every wall.
  */
 struct gi_share_ops {
 	/*
@@ -72,12 +72,15 @@ struct gi_share_ops {
 	size_t (*bytes_max)(const struct gi_method *method, unsigned count);
 	/*
 	 * This node's slice of the last update(), after renderer_finished. GR_OK;
-	 * GR_NOTHING with *len 0 when it is as the others have it.
+	 * GR_NOTHING with *len 0 when it is as the others have it. After a set()
+	 * that changed something, and after a restart of the light, they have
+	 * nothing: GR_OK, steady or not.
 	 */
 	int (*take)(struct gi_method *method, uint8_t *bytes, size_t size, size_t *len);
 	/*
-	 * A slice of another node; it counts from the next update() on. GR_OK,
-	 * GR_ERR_FORMAT for bytes that are none: nothing changes then.
+	 * A slice of another node; it counts from the next update() on, which runs
+	 * even if the light was steady. GR_OK, GR_ERR_FORMAT for bytes that are
+	 * none, or of another division than set() said: nothing changes then.
 	 */
 	int (*put)(struct gi_method *method, const uint8_t *bytes, size_t len);
 };
