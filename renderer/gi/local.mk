@@ -9,7 +9,7 @@ RENDERER_SOURCES += \
 	renderer/gi/lpv_cpu.c renderer/gi/lpv_cpu.h renderer/gi/lpv_thesis.c \
 	renderer/gi/sectors.c renderer/gi/sectors.h \
 	renderer/gi/surface.c renderer/gi/surface.h \
-	renderer/gi/surfel_set.h \
+	renderer/gi/surfel_grid.c renderer/gi/surfel_set.c renderer/gi/surfel_set.h \
 	renderer/gi/transfer.c renderer/gi/transfer.h \
 	renderer/trace/rays.c renderer/trace/rays.h renderer/trace/reference.h
 

@@ -14,8 +14,10 @@
  * seed 003's transfer vectors with surfaces for a sky.)
  *
  * Light of emissive surfaces and of the environment does not change; E_fixed
- * is traced once (fixed_emissive + fixed_other). So links carry reflected light only. A link ends where it
- * meets a diffuse surface; off mirrors and glossy ones it goes on.
+ * is traced once (fixed_emissive + fixed_other). So links carry reflected light
+ * only. A link ends where it meets a diffuse surface; off mirrors and glossy
+ * ones it goes on, by chance t, and `albedo` is what is reflected diffusely
+ * over 1 - t: so all links weigh the same.
  *
  * Not thread safe.
  */
@@ -35,10 +37,13 @@ struct surfel {
 	float position[3]; /* scene, metres */
 	uint32_t normal;   /* unit, octahedral, two 16 bit signed normalised: x in the low half */
 	/*
-	 * How far one sees along the surface, as a share of `radius` (255: all of
-	 * it), in SURFEL_SECTORS directions; between them 1/reach is linear.
-	 * Sector 0 is the first axis of surfel_frame, and on to the second. A wall
-	 * on the surface stops it: beyond, the surfel is not heard.
+	 * How far one sees along the surface in SURFEL_SECTORS directions; a wall
+	 * on the surface ends it, and beyond it the surfel is not heard. The ends
+	 * are the corners of a polygon with straight sides, so that a straight
+	 * wall is met exactly. Direction k is (x, y) on |x| + |y| = 1 in the axes
+	 * of surfel_frame, at the k-th of 16 equal steps from (1, 0) by way of
+	 * (0, 1); the length |x| + |y| at its end, over sqrt(2) radius_m, is
+	 * reach / 255. 255: there is no end. Never 0.
 	 */
 	uint8_t reach[SURFEL_SECTORS];
 };
@@ -48,7 +53,13 @@ struct surfel_tap {
 	uint32_t normal;   /* there */
 };
 
-/* Cells of a grid over the scene; a dense one, or hashed where that is too large: see surfel_set_cell. */
+/*
+ * Cells of a grid over the scene; a dense one, or hashed where that is too
+ * large. A cell's number is x + size[0] (y + size[1] z), below 2^32 - 1; its
+ * slot is that number, or, hashed, surfel_grid_slot's or the first after it (the
+ * first slot follows the last) with its key; an empty one ends the search.
+ * A position outside of the grid has no cell.
+ */
 struct surfel_grid {
 	float origin[3], cell_m;
 	int32_t size[3];
@@ -59,7 +70,10 @@ struct surfel_grid {
 	size_t member_count;
 };
 
-/* Probes stand in a grid: x fastest. Those inside of solid things are dead. */
+/*
+ * Probes stand in a grid, x fastest, the first at `origin`, half a cell inside
+ * of the scene's bounds. Those inside of solid things are dead.
+ */
 struct surfel_probes {
 	float origin[3], cell_m;
 	int32_t size[3]; /* probes along each axis */
@@ -80,7 +94,7 @@ struct surfel_set {
 	uint32_t links_each, taps_each;
 	struct surfel *surfels;
 	float *area;         /* m^2, of each patch */
-	float (*albedo)[3];  /* diffuse reflectance, mean over the patch */
+	float (*albedo)[3];  /* diffuse reflectance as links need it (above), mean over the patch; 0..1 */
 	/*
 	 * E_fixed, W/m^2, in two: what emissive surfaces send straight here, which
 	 * shading adds by itself, and all else that does not change (the
@@ -103,6 +117,13 @@ void surfel_set_destroy(struct surfel_set **set);
 /* Order-dependent 64 bit hash of all data that light depends on. */
 uint64_t surfel_set_hash(const struct surfel_set *set);
 size_t surfel_set_bytes(const struct surfel_set *set);
+/* All arrays in a fixed order, for what treats them alike; returns the sum of their bytes. */
+#define SURFEL_PARTS 15
+struct surfel_part {
+	const void *data;
+	size_t bytes;
+};
+size_t surfel_set_parts(const struct surfel_set *set, struct surfel_part out[SURFEL_PARTS]);
 
 /* Octahedral normals (Cigolle et al. 2014), 16 bit each. */
 uint32_t surfel_normal_pack(const float normal[3]);
@@ -111,12 +132,37 @@ void surfel_normal_unpack(uint32_t packed, float out[3]);
 void surfel_frame(const float normal[3], float u[3], float v[3]);
 
 /*
+ * How far a point is on its way from surfel i to the end of its sight: up to 1
+ * it is seen, beyond it is behind a wall.
+ */
+float surfel_sight(const struct surfel_set *set, size_t i, const float position[3]);
+/*
  * Weights of reconstruction, the same as shaders/gi_surfels.glsl has: what
  * surfel i counts at a point of a surface. 0 where it is not heard: too far,
- * another side, another plane, or behind a wall.
+ * another side, another plane, or behind a wall. With d the way from the
+ * surfel, n and m the two normals, s surfel_sight:
+ *
+ *   (1 - d^2/R^2)^2 max(0, 2 n.m - 1)^2 max(0, 1 - (d.(n+m)/2 / (SURFEL_PLANE spacing))^2)^2 fade(s)
+ *
+ * fade falls from 1 to SURFEL_FADE on the last SURFEL_FADE_FROM..1 of sight, so
+ * that its end is not seen, and is SURFEL_BEHIND up to SURFEL_SIGHT_MOST: what
+ * stands closer to a wall than reach can tell hears something.
  */
+#define SURFEL_PLANE 0.25f
+#define SURFEL_FADE_FROM 0.6f
+#define SURFEL_FADE 0.05f
+#define SURFEL_BEHIND 1e-4f
+#define SURFEL_SIGHT_MOST 1.05f
 float surfel_weight(const struct surfel_set *set, size_t i, const float position[3],
 		    const float normal[3]);
+/* Fills set->grid from surfels, radius and bounds. GR_OK, GR_ERR_NOMEM. */
+int surfel_grid_build(struct surfel_set *set, const float min[3], const float max[3]);
+static inline uint32_t surfel_grid_slot(uint32_t cell, uint32_t slots)
+{
+	uint32_t x = cell * UINT32_C(0x9e3779b1);
+
+	return (x ^ (x >> 15)) & (slots - 1);
+}
 /* Surfels whose radius reaches into the cell of a position; returns their number. */
 size_t surfel_set_cell(const struct surfel_set *set, const float position[3],
 		       const uint32_t **out_members);
