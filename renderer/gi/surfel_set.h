@@ -81,7 +81,11 @@ struct surfel_probes {
 	uint32_t links_each;
 	float (*directions)[3]; /* links_each unit directions, spread evenly over the sphere; the same for all */
 	uint32_t *links;        /* count x links_each */
-	float (*fixed)[SURFEL_SH][3]; /* radiance of emissive surfaces and environment, SH */
+	/*
+	 * Radiance that does not change, SH, as fixed_other: of the environment, and of
+	 * emissive surfaces by way of mirrors; what they send straight here shading adds.
+	 */
+	float (*fixed)[SURFEL_SH][3];
 	/* Distances to the surfaces around, metres, for visibility: mean and mean square a texel. */
 	float (*distance)[SURFEL_PROBE_SIDE * SURFEL_PROBE_SIDE][2];
 	uint8_t *alive;
