@@ -157,6 +157,7 @@ void renderer_destroy(struct renderer **renderer)
 	}
 	program_destroy(&r->shade_program);
 	program_destroy(&r->gbuffer_program);
+	program_destroy(&r->irradiance_program);
 	if (r->gi)
 		r->gi->ops->destroy(r->gi);
 	emissive_destroy(&r->emissive);

@@ -71,6 +71,14 @@ int renderer_read_indirect(struct renderer *renderer, int eye, struct image *out
 	return read_image(renderer, eye, true, out);
 }
 
+bool renderer_gi_stats(const struct renderer *renderer, struct gi_stats *out)
+{
+	if (!renderer->gi)
+		return false;
+	renderer->gi->ops->stats(renderer->gi, out);
+	return true;
+}
+
 uint64_t renderer_light_hash(struct renderer *renderer)
 {
 	return renderer->gi ? renderer->gi->ops->hash(renderer->gi) : 0;

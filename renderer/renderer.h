@@ -75,6 +75,21 @@ int renderer_read_rgb(struct renderer *renderer, uint8_t *rgb);
 int renderer_read_radiance(struct renderer *renderer, int eye, struct image *out);
 /* Indirect irradiance-reflected part alone (same units), for accuracy tests. Needs keep_radiance. */
 int renderer_read_indirect(struct renderer *renderer, int eye, struct image *out);
+/*
+ * Indirect irradiance of the light field (W/m^2 per band) at points of
+ * surfaces, as shading takes it; zero without a method. For tests and
+ * measurements: it compiles and allocates, and waits. At most
+ * RENDERER_POINTS_MAX points. GR_OK, GR_ERR_RANGE, GR_ERR_NOMEM, GR_ERR_GL.
+ */
+struct renderer_point {
+	float position[3], normal[3]; /* scene, metres; unit, towards the lit side */
+};
+#define RENDERER_POINTS_MAX ((size_t)1 << 20)
+int renderer_read_irradiance(struct renderer *renderer, const struct renderer_point *points,
+			     size_t count, float (*out)[3]);
+struct gi_stats;
+/* Of the method; false when there is none. */
+bool renderer_gi_stats(const struct renderer *renderer, struct gi_stats *out);
 /* Hash of the light field, see gi.h; 0 when there is no method. Waits. */
 uint64_t renderer_light_hash(struct renderer *renderer);
 struct timers *renderer_timers(struct renderer *renderer);

@@ -39,6 +39,7 @@ struct renderer {
 	struct tone_stage *tone;
 	struct timers *timers;
 	unsigned gbuffer_program, shade_program;
+	unsigned irradiance_program; /* 0: nobody has asked yet */
 	unsigned frame_buffer; /* struct frame_block */
 	int eye_count;
 	struct renderer_eye eyes[EYES_MAX];

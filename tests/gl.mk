@@ -69,3 +69,9 @@ EXTRA_DIST += \
 	tests/fuzz/corpus/texture/baseline.jpg \
 	tests/fuzz/corpus/texture/progressive.jpg \
 	tests/fuzz/corpus/texture/rgb.png
+
+check_PROGRAMS += tests/unit/test_timer
+TESTS += tests/unit/test_timer
+tests_unit_test_timer_SOURCES = tests/unit/test_timer.c tests/unit/unit.h tests/unit/gl.h
+tests_unit_test_timer_CFLAGS = $(TEST_CFLAGS) $(EPOXY_CFLAGS)
+tests_unit_test_timer_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS)

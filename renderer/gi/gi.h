@@ -42,6 +42,7 @@ struct gi_stats {
 	bool steady;          /* nothing changes any more; work has stopped */
 	int steps;            /* propagation steps or gathers done this frame */
 	uint64_t nonfinite;   /* cells found NaN or Inf: an error, reported once a second */
+	uint64_t gpu_bytes;   /* of its buffers and textures on the GPU, without the lamps' maps */
 	double residual;      /* largest change since the frame before (after a restart: of the last step) over the largest value, some frames old; -1 unknown */
 };
 

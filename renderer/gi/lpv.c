@@ -470,6 +470,29 @@ static int create_gl(struct lpv *lpv, const struct links *links)
 	return glGetError() == GL_NO_ERROR ? GR_OK : GR_ERR_GL;
 }
 
+static uint64_t gpu_bytes(const struct lpv *lpv)
+{
+	const unsigned buffers[] = {
+		lpv->surface_of.buffer, lpv->fronts.buffer, lpv->surfaces.buffer,
+		lpv->surface_cells.buffer, lpv->whole.buffer, lpv->inject.buffer,
+		lpv->emitted.buffer, lpv->blocks.buffer, lpv->light[0].buffer,
+		lpv->light[1].buffer, lpv->sent[0].buffer, lpv->sent[1].buffer,
+		lpv->block, lpv->splat, lpv->checks, lpv->start.oldest, lpv->start.sums,
+	};
+	uint64_t sum = 0;
+
+	for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) {
+		GLint64 bytes = 0;
+
+		glGetNamedBufferParameteri64v(buffers[i], GL_BUFFER_SIZE, &bytes);
+		sum += (uint64_t)bytes;
+	}
+	if (lpv->is_thesis)
+		sum += sizeof lpv->thesis.images / sizeof *lpv->thesis.images * 4 * sizeof(float) *
+		       lattice_cells(&lpv->lattice);
+	return sum;
+}
+
 static void say(struct lpv *lpv, const struct links *links, const struct scene_file *file)
 {
 	const int *size = lpv->lattice.size;
@@ -524,6 +547,7 @@ int gi_lpv_create(struct gi_method **out, const struct scene *scene,
 		if (result != GR_OK)
 			goto out;
 	}
+	lpv->stats.gpu_bytes = gpu_bytes(lpv);
 	say(lpv, links, file);
 	*out = &lpv->base;
 	lpv = NULL;

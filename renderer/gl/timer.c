@@ -18,6 +18,7 @@ struct slot {
 	struct span spans[TIMER_STAGES][TIMER_SPANS];
 	int used[TIMER_STAGES]; /* spans that were ended */
 	bool pending;           /* handed to the GPU, not yet read */
+	bool forgotten;         /* pending, and not to be counted */
 };
 
 struct timers {
@@ -28,6 +29,7 @@ struct timers {
 	bool works;
 	struct timer_stats stats[TIMER_STAGES];
 	double sum_ms[TIMER_STAGES];
+	float window_ms[TIMER_STAGES][TIMER_WINDOW]; /* of frame i at i modulo TIMER_WINDOW */
 };
 
 int timers_create(struct timers **out)
@@ -115,6 +117,7 @@ static void add_sample(struct timers *t, int stage, double ms)
 	s->last_ms = ms;
 	s->min_ms = s->count == 0 || ms < s->min_ms ? ms : s->min_ms;
 	s->max_ms = s->count == 0 || ms > s->max_ms ? ms : s->max_ms;
+	t->window_ms[stage][s->count % TIMER_WINDOW] = (float)ms;
 	s->count++;
 	t->sum_ms[stage] += ms;
 	s->mean_ms = t->sum_ms[stage] / (double)s->count;
@@ -133,11 +136,11 @@ static void collect(struct timers *t, struct slot *slot)
 			if (end > begin)
 				ms += (double)(end - begin) * 1e-6;
 		}
-		if (slot->used[stage])
+		if (slot->used[stage] && !slot->forgotten)
 			add_sample(t, stage, ms);
 		slot->used[stage] = 0;
 	}
-	slot->pending = false;
+	slot->pending = slot->forgotten = false;
 }
 
 static bool slot_used(const struct slot *slot)
@@ -173,4 +176,29 @@ void timers_stats(const struct timers *timers, int stage, struct timer_stats *ou
 		return;
 	}
 	*out = timers->stats[stage];
+}
+
+size_t timers_window(const struct timers *timers, int stage, double ms[TIMER_WINDOW])
+{
+	uint64_t count, first;
+
+	if (stage < 0 || stage >= TIMER_STAGES)
+		return 0;
+	count = timers->stats[stage].count;
+	first = count > TIMER_WINDOW ? count - TIMER_WINDOW : 0;
+	for (uint64_t i = first; i < count; i++)
+		ms[i - first] = (double)timers->window_ms[stage][i % TIMER_WINDOW];
+	return (size_t)(count - first);
+}
+
+void timers_reset(struct timers *timers)
+{
+	for (int stage = 0; stage < TIMER_STAGES; stage++) {
+		const char *name = timers->stats[stage].name;
+
+		timers->stats[stage] = (struct timer_stats){ .name = name };
+		timers->sum_ms[stage] = 0;
+	}
+	for (int s = 0; s < RING; s++)
+		timers->slots[s].forgotten = timers->slots[s].pending;
 }

@@ -7,11 +7,15 @@
 #define GROTTO_RENDERER_GL_TIMER_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #define TIMER_STAGES 16
 /* How often a stage may run in one frame (once an eye); the times add up, more are not measured. */
 #define TIMER_SPANS 4
+
+/* Frames that medians and spread are of: the last so many in which the stage ran. */
+#define TIMER_WINDOW 512
 
 struct timer_stats {
 	const char *name; /* NULL: unused */
@@ -31,5 +35,15 @@ void timers_end(struct timers *timers, int stage);
  */
 void timers_frame(struct timers *timers);
 void timers_stats(const struct timers *timers, int stage, struct timer_stats *out);
+/*
+ * The last frames' times of a stage, oldest first, at most TIMER_WINDOW;
+ * returns how many. For medians and spread: see tools/bench/stats.h.
+ */
+size_t timers_window(const struct timers *timers, int stage, double ms[TIMER_WINDOW]);
+/*
+ * Forgets what was measured, for warm-up frames. Frames on their way to the
+ * GPU are forgotten, too: from the next frame on it counts.
+ */
+void timers_reset(struct timers *timers);
 
 #endif
