@@ -14,6 +14,12 @@ tests_unit_test_children_SOURCES = tests/unit/test_children.c tests/unit/unit.h
 tests_unit_test_children_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_children_LDADD = tools/libgtools.a $(BASE_LIBS) $(CMOCKA_LIBS)
 
+check_PROGRAMS += tests/unit/test_bench_stats
+TESTS += tests/unit/test_bench_stats
+tests_unit_test_bench_stats_SOURCES = tests/unit/test_bench_stats.c tests/unit/unit.h
+tests_unit_test_bench_stats_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_bench_stats_LDADD = tools/libgbench.a $(BASE_LIBS) $(CMOCKA_LIBS) -lm
+
 # The command from outside. Scripts run in the build folder and read $(srcdir).
 dist_check_SCRIPTS += tests/command/check.sh tests/command/demo.sh tests/command/double.sh \
 	tests/command/report.sh

@@ -9,3 +9,13 @@ pkglibexec_PROGRAMS = tools/bench-lattice
 tools_bench_lattice_SOURCES = tools/bench/lattice.c $(LATTICE_BENCH_SOURCES)
 tools_bench_lattice_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(EPOXY_CFLAGS)
 tools_bench_lattice_LDADD = $(RENDERER_LIBS)
+
+# `grotto bench SCENE...`: a library, so that tests can link its parts.
+noinst_LIBRARIES += tools/libgbench.a
+tools_libgbench_a_SOURCES = \
+	tools/bench/axis.c tools/bench/axis.h \
+	tools/bench/plot.c tools/bench/plot.h \
+	tools/bench/stats.c tools/bench/stats.h \
+	tools/bench/svg.c tools/bench/svg.h
+tools_libgbench_a_CPPFLAGS = $(AM_CPPFLAGS)
+tools_libgbench_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(JSONC_CFLAGS)
