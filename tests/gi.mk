@@ -17,3 +17,10 @@ tests_accuracy_test_holes_SOURCES = tests/accuracy/test_holes.c tests/unit/unit.
 	tests/unit/shared.h
 tests_accuracy_test_holes_CFLAGS = $(TEST_CFLAGS) $(EPOXY_CFLAGS) $(OPENEXR_CFLAGS)
 tests_accuracy_test_holes_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm
+
+check_PROGRAMS += tests/accuracy/test_surfels
+TESTS += tests/accuracy/test_surfels
+tests_accuracy_test_surfels_SOURCES = tests/accuracy/test_surfels.c tests/unit/unit.h \
+	$(SURFEL_BENCH_SOURCES)
+tests_accuracy_test_surfels_CFLAGS = $(TEST_CFLAGS)
+tests_accuracy_test_surfels_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS)

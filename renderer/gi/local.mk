@@ -9,8 +9,13 @@ RENDERER_SOURCES += \
 	renderer/gi/lpv_cpu.c renderer/gi/lpv_cpu.h renderer/gi/lpv_thesis.c \
 	renderer/gi/sectors.c renderer/gi/sectors.h \
 	renderer/gi/surface.c renderer/gi/surface.h \
+	renderer/gi/surfel_bake.c renderer/gi/surfel_bake.h renderer/gi/surfel_bake_private.h \
+	renderer/gi/surfel_cells.c renderer/gi/surfel_fixed.c renderer/gi/surfel_links.c renderer/gi/surfel_material.c \
+	renderer/gi/surfel_patch_data.c renderer/gi/surfel_patches.c renderer/gi/surfel_points.c renderer/gi/surfel_probes.c \
+	renderer/gi/surfel_random.h renderer/gi/surfel_reach.c renderer/gi/surfel_surface.c \
 	renderer/gi/surfel_grid.c renderer/gi/surfel_set.c renderer/gi/surfel_set.h \
 	renderer/gi/transfer.c renderer/gi/transfer.h \
+	renderer/trace/crew.c renderer/trace/crew.h renderer/trace/vector.h \
 	renderer/trace/rays.c renderer/trace/rays.h renderer/trace/reference.h
 
 SHADERS += \

@@ -2,6 +2,7 @@
 LATTICE_ROOM_SOURCES = tools/bench/room.c tools/bench/room.h \
 	tools/bench/truth.c tools/bench/truth.h
 LATTICE_BENCH_SOURCES = $(LATTICE_ROOM_SOURCES) tools/bench/lpv_bench.c tools/bench/lpv_bench.h
+SURFEL_BENCH_SOURCES = $(LATTICE_ROOM_SOURCES) tools/bench/surfel_cpu.c tools/bench/surfel_cpu.h
 
 # Cost and error of the lattice; takes a minute, so not a test.
 # `grotto bench lattice` starts it.

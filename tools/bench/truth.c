@@ -62,8 +62,8 @@ static void frame_of(const float n[3], float u[3], float v[3])
 	v[2] = -n[1];
 }
 
-static void direct(const struct truth *truth, const float position[3], const float normal[3],
-		   float out[3])
+void truth_direct(const struct truth *truth, const float position[3], const float normal[3],
+		  float out[3])
 {
 	float to[3], off[3], length, cosine, inside;
 
@@ -234,7 +234,7 @@ static void trace_path(const struct truth *truth, const struct truth_sample *s, 
 			position[i] = from[i] + hit.distance * to[i];
 			normal[i] = at.facing[i];
 		}
-		direct(truth, position, normal, e);
+		truth_direct(truth, position, normal, e);
 		double most = 0;
 		for (int c = 0; c < 3; c++) {
 			weight[c] *= (double)at.albedo[c];

@@ -28,6 +28,10 @@ struct truth {
 int truth_init(struct truth *out, const struct scene *scene, const struct truth_spot *spot);
 void truth_finish(struct truth *truth);
 
+/* The spot's irradiance on a surface point. */
+void truth_direct(const struct truth *truth, const float position[3], const float normal[3],
+		  float out[3]);
+
 struct truth_texel {
 	float position[3], area, normal[3], exitance[3];
 };

@@ -1,0 +1,143 @@
+/*
+ * Inside of the surfel baker: its steps, in order, each in a file of its own.
+ * All return GR_OK, GR_NOTHING (stopped) or an error.
+ */
+#ifndef GROTTO_RENDERER_GI_SURFEL_BAKE_PRIVATE_H
+#define GROTTO_RENDERER_GI_SURFEL_BAKE_PRIVATE_H
+
+#include "renderer/gi/surface.h"
+#include "renderer/gi/surfel_bake.h"
+#include "renderer/trace/crew.h"
+#include "renderer/trace/rays.h"
+#include "renderer/trace/vector.h"
+
+/* Points a surfel's patch has about. */
+#define BAKE_POINTS_EACH 64
+/* Cosine of the largest angle between the normals of a patch. */
+#define BAKE_SAME_SIDE 0.7f
+/* Sight along a surface is from this far above it, of the spacing: lower steps are none. */
+#define BAKE_LIFT 0.1f
+/* How far a surfel is heard, in spacings. */
+#define BAKE_RADIUS 2.0f
+
+struct bake_point {
+	struct v3 position;
+	uint32_t side; /* triangle * 2, + 1 on its back */
+	float u, v;    /* in the triangle, as struct ray_hit's */
+	float area;    /* m^2 that it stands for */
+	float lift;    /* m above the surface from which sight is looked for */
+	uint32_t patch; /* surfel */
+};
+
+/* Buckets of a spatial hash: items in cells of a cube grid, found by cell. */
+struct bake_cells {
+	float cell_m;
+	size_t slots;    /* power of two */
+	uint64_t *keys;  /* cell + 1, 0 empty */
+	uint32_t *first; /* slots + 1 */
+	uint32_t *items;
+};
+
+struct bake {
+	const struct scene *scene;
+	const struct scene_file *file; /* may be NULL */
+	struct surfel_bake_params params;
+	struct gr_diag *diag;
+	int threads;
+
+	struct rays *rays;
+	struct surface_lookup *lookup;
+	size_t triangle_count;
+	struct v3 *normals;      /* of each triangle's front; 0 0 0: not a triangle */
+	float *areas;            /* of each triangle, m^2 */
+	bool *two_sided;         /* of each triangle */
+	uint32_t *piece_order;   /* triangles sorted by connected piece */
+	uint32_t *piece_first;   /* places in it */
+	size_t piece_count;
+	float min[3], max[3];    /* of real triangles */
+	double area;             /* of all sides */
+
+	float spacing, radius;
+	float lift;              /* most */
+	float offset;            /* of a ray's start off its surface */
+
+	struct bake_point *points;
+	size_t point_count;
+	float point_area;        /* mean */
+	struct bake_cells cells; /* of the points */
+	uint32_t *chosen;        /* points that are surfels */
+	size_t chosen_count;
+	struct bake_cells surfel_cells;
+	uint32_t *patch_first;   /* surfels + 1 places in patch_points */
+	uint32_t *patch_points;  /* sorted by patch; in one, by place */
+
+	struct surfel_set *set;
+
+	/* progress */
+	const char *stage;
+	double stage_from, stage_to; /* shares of all the work */
+	int64_t started_ns;
+};
+
+static inline struct v3 bake_normal(const struct bake *bake, uint32_t side)
+{
+	struct v3 n = bake->normals[side / 2];
+
+	return side & 1 ? v3_scale(n, -1.0f) : n;
+}
+
+/* surfel_surface.c: triangles, sides, pieces, bounds. */
+int bake_surface(struct bake *bake);
+/* surfel_material.c: diffuse reflectance at a point, as links need it. */
+void bake_albedo(const struct bake *bake, const struct bake_point *point, float out[3]);
+/* surfel_points.c: fills points for about `surfels` surfels of this spacing. */
+int bake_points(struct bake *bake);
+/*
+ * surfel_patches.c. Adds surfels such that each of the points (only NULL: all)
+ * has one of those just added near. GR_ERR_RANGE: they would be more than
+ * SURFEL_MOST.
+ */
+int bake_choose(struct bake *bake, const uint32_t *only, size_t only_count);
+int bake_sort_chosen(struct bake *bake);
+/* To which surfel each point belongs. */
+int bake_assign(struct bake *bake);
+/* The nearest surfel of the same surface, seen from there; after bake_assign has begun. */
+uint32_t bake_nearest_surfel(const struct bake *bake, const struct bake_point *p);
+/* surfel_patch_data.c: points by patch; area, albedo, taps. */
+int bake_patch_data(struct bake *bake);
+/* A point of patch i at a share 0..1 of its area. */
+uint32_t bake_patch_point(const struct bake *bake, size_t i, float share);
+/*
+ * surfel_reach.c: the set's surfels of the chosen points, and its grid; then the
+ * points at which no surfel is heard. Caller frees *out.
+ */
+int bake_reach(struct bake *bake);
+int bake_unheard(struct bake *bake, uint32_t **out, size_t *out_count);
+/*
+ * surfel_links.c. A ray's surfel: follows it from `from` along `way` until it
+ * ends on a diffuse surface. SURFEL_NONE where it brings nothing.
+ */
+int bake_links(struct bake *bake);
+/* A direction about a normal, by the cosine. */
+struct v3 bake_cosine(struct v3 normal, const float u[2]);
+/* The surfel whose patch holds a point of a side; SURFEL_NONE: of none. */
+uint32_t bake_surfel_at(const struct bake *bake, struct v3 position, uint32_t side);
+/* surfel_fixed.c */
+int bake_fixed(struct bake *bake);
+/* surfel_probes.c */
+int bake_probes(struct bake *bake);
+
+/* surfel_cells.c: position(ctx, i) of `count` items. GR_OK, GR_ERR_NOMEM. */
+int bake_cells_build(struct bake_cells *out, float cell_m, size_t count,
+		     struct v3 (*position)(const void *ctx, size_t i), const void *ctx);
+void bake_cells_finish(struct bake_cells *cells);
+/* Items of the cell `step` cells away from that of a position. */
+size_t bake_cells_at(const struct bake_cells *cells, struct v3 position, const int step[3],
+		     const uint32_t **out_items);
+
+/* Says how much of the stage is done; false: stop. */
+bool bake_told(struct bake *bake, double done);
+/* Runs work over items on all threads, with progress. */
+int bake_run(struct bake *bake, size_t items, size_t portion, crew_work work, void *ctx);
+
+#endif

@@ -1,0 +1,140 @@
+/* What lights a surfel: rays from its patch to the surfels that they meet. */
+#include "renderer/gi/surfel_bake_private.h"
+
+#include "base/result.h"
+#include "renderer/gi/surfel_random.h"
+
+#include <stdlib.h>
+
+/* Points of another plane than this, of the spacing, are another surface's. */
+#define OTHER_PLANE 0.1f
+
+/* The nearest point of a side among those of one cell; -1: there is none. */
+static int64_t nearest_in(const struct bake *bake, struct v3 position, uint32_t side,
+			  const int step[3], float *square)
+{
+	const uint32_t *items;
+	size_t n = bake_cells_at(&bake->cells, position, step, &items);
+	int64_t found = -1;
+
+	for (size_t k = 0; k < n; k++) {
+		const struct bake_point *p = &bake->points[items[k]];
+		struct v3 d = v3_sub(p->position, position);
+		float s = v3_dot(d, d);
+
+		if (s >= *square)
+			continue;
+		if (p->side != side) {
+			struct v3 m = bake_normal(bake, side);
+
+			if (v3_dot(bake_normal(bake, p->side), m) < BAKE_SAME_SIDE ||
+			    fabsf(v3_dot(d, m)) > OTHER_PLANE * bake->spacing)
+				continue;
+		}
+		*square = s;
+		found = items[k];
+	}
+	return found;
+}
+
+/* Seen from the surfel, as reach knows it. */
+static bool in_sight(const struct bake *bake, uint32_t surfel, struct v3 position)
+{
+	float at[3];
+
+	if (surfel == SURFEL_NONE)
+		return false;
+	v3_put(position, at);
+	return surfel_sight(bake->set, surfel, at) <= 1;
+}
+
+uint32_t bake_surfel_at(const struct bake *bake, struct v3 position, uint32_t side)
+{
+	static const int here[3] = { 0, 0, 0 };
+	float square = INFINITY;
+	int64_t found = nearest_in(bake, position, side, here, &square);
+	struct bake_point p = { .position = position, .side = side, .lift = bake->lift };
+	uint32_t surfel;
+
+	if (found >= 0 && in_sight(bake, bake->points[found].patch, position))
+		return bake->points[found].patch;
+	for (int k = 0; k < 27; k++) {
+		const int step[3] = { k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1 };
+		int64_t other = nearest_in(bake, position, side, step, &square);
+
+		found = other >= 0 ? other : found;
+	}
+	if (found >= 0 && in_sight(bake, bake->points[found].patch, position))
+		return bake->points[found].patch;
+	/* Beside a wall: the point may belong to what is on its other side. */
+	if (found >= 0)
+		p.lift = bake->points[found].lift;
+	surfel = bake_nearest_surfel(bake, &p);
+	if (surfel == SURFEL_NONE && found >= 0)
+		surfel = bake->points[found].patch;
+	return surfel;
+}
+
+struct v3 bake_cosine(struct v3 normal, const float u[2])
+{
+	struct v3_frame frame = v3_frame_of(normal);
+	float r = sqrtf(u[0]), phi = 2 * TRACE_PI * u[1];
+
+	return v3_from_local(&frame, (struct v3){ r * cosf(phi), r * sinf(phi),
+						  sqrtf(fmaxf(1 - u[0], 0)) });
+}
+
+static uint32_t follow(const struct bake *bake, struct v3 from, struct v3 way)
+{
+	float at[3], to[3];
+	struct ray_hit hit;
+	uint32_t side;
+
+	v3_put(from, at);
+	v3_put(way, to);
+	if (!rays_nearest(bake->rays, at, to, INFINITY, &hit))
+		return SURFEL_NONE;
+	side = 2 * hit.triangle;
+	if (v3_dot(v3_of(hit.normal), way) > 0) {
+		if (!bake->two_sided[hit.triangle])
+			return SURFEL_NONE;
+		side++;
+	}
+	return bake_surfel_at(bake, v3_ahead(from, way, hit.distance), side);
+}
+
+static void link_all(void *ctx, size_t begin, size_t end, int thread)
+{
+	struct bake *bake = ctx;
+	struct surfel_set *set = bake->set;
+
+	(void)thread;
+	for (size_t i = begin; i < end; i++) {
+		uint64_t key = random_start(bake->params.seed, i);
+
+		for (uint32_t j = 0; j < set->links_each; j++) {
+			float u[3];
+			const struct bake_point *p;
+			struct v3 n;
+
+			sobol_point(key, j, u);
+			p = &bake->points[bake_patch_point(bake, i, u[2])];
+			n = bake_normal(bake, p->side);
+			set->links[i * set->links_each + j] =
+				follow(bake, v3_ahead(p->position, n, bake->offset),
+				       bake_cosine(n, u));
+		}
+	}
+}
+
+int bake_links(struct bake *bake)
+{
+	struct surfel_set *set = bake->set;
+
+	set->links_each = (uint32_t)bake->params.links;
+	set->links = malloc((set->count * set->links_each + 1) * sizeof *set->links);
+	if (!set->links)
+		return GR_ERR_NOMEM;
+	set->rays += set->count * set->links_each;
+	return bake_run(bake, set->count, 8, link_all, bake);
+}

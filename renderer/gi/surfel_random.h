@@ -1,0 +1,87 @@
+/*
+ * Numbers for the baker: PCG32 (O'Neill 2014) streams, and Owen-scrambled Sobol
+ * points in three dimensions for any number of points (Sobol 1967; Burley 2020,
+ * with Vegdahl's hash). Each point by itself is uniform, so a mean over any
+ * number of them is unbiased. Pure; any thread.
+ */
+#ifndef GROTTO_RENDERER_GI_SURFEL_RANDOM_H
+#define GROTTO_RENDERER_GI_SURFEL_RANDOM_H
+
+#include <stdint.h>
+
+/* splitmix64's finaliser (Steele et al. 2014). */
+static inline uint64_t random_mix(uint64_t x)
+{
+	x = (x ^ (x >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
+	x = (x ^ (x >> 27)) * UINT64_C(0x94d049bb133111eb);
+	return x ^ (x >> 31);
+}
+
+static inline uint64_t random_start(uint64_t seed, uint64_t item)
+{
+	return random_mix(random_mix(seed + UINT64_C(0x9e3779b97f4a7c15)) ^
+			  (item + UINT64_C(0x9e3779b97f4a7c15)));
+}
+
+static inline uint32_t random_u32(uint64_t *state)
+{
+	uint64_t old = *state;
+	uint32_t x = (uint32_t)(((old >> 18) ^ old) >> 27);
+	uint32_t turn = (uint32_t)(old >> 59);
+
+	*state = old * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+	return (x >> turn) | (x << ((32 - turn) & 31));
+}
+
+/* In [0, 1). */
+static inline double random_uniform(uint64_t *state)
+{
+	return random_u32(state) * 0x1p-32;
+}
+
+static inline uint32_t sobol_reverse(uint32_t x)
+{
+	x = __builtin_bswap32(x);
+	x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+	x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+	return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+}
+
+/* A nested uniform scramble of bits given in reverse. */
+static inline uint32_t sobol_scramble(uint32_t x, uint32_t seed)
+{
+	x ^= x * 0x3d20adeau;
+	x += seed;
+	x *= (seed >> 16) | 1u;
+	x ^= x * 0x05526c56u;
+	x ^= x * 0x53a22864u;
+	return x;
+}
+
+/* Point `index` of a set, below 2^16 points; all coordinates in [0, 1). */
+static inline void sobol_point(uint64_t key, uint32_t index, float out[3])
+{
+	uint32_t second = 0, third = 0;
+	/* direction numbers of the polynomials x + 1 and x^2 + x + 1 (Joe and Kuo: m = 1; 1 3) */
+	uint32_t v2 = 1u << 31, a = 1u << 31, b = 3u << 30;
+
+	for (uint32_t i = index; i; i >>= 1) {
+		uint32_t c = a ^ b ^ (a >> 2);
+
+		if (i & 1) {
+			second ^= v2;
+			third ^= a;
+		}
+		v2 ^= v2 >> 1;
+		a = b;
+		b = c;
+	}
+	const uint32_t reversed[3] = { index, sobol_reverse(second), sobol_reverse(third) };
+	for (uint32_t d = 0; d < 3; d++) {
+		uint32_t seed = (uint32_t)(random_mix(key + d * UINT64_C(0x9e3779b97f4a7c15)) >> 32);
+
+		out[d] = (float)(sobol_reverse(sobol_scramble(reversed[d], seed)) >> 8) * 0x1p-24f;
+	}
+}
+
+#endif
