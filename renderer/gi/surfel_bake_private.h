@@ -113,10 +113,18 @@ uint32_t bake_patch_point(const struct bake *bake, size_t i, float share);
  */
 int bake_reach(struct bake *bake);
 int bake_unheard(struct bake *bake, uint32_t **out, size_t *out_count);
+/* Where a ray's way ended, and the fixed light that it brings by way of mirrors. */
+struct bake_end {
+	uint32_t surfel; /* SURFEL_NONE: brings no reflected light */
+	bool back;       /* met an unlit back at once */
+	float light[3];  /* W/(m^2 sr) */
+};
 /*
- * surfel_links.c. A ray's surfel: follows it from `from` along `way` until it
- * ends on a diffuse surface. SURFEL_NONE where it brings nothing.
+ * surfel_links.c. Follows a ray until it ends on a diffuse surface, is absorbed
+ * or leaves the scene; key: of its random numbers.
  */
+void bake_follow(const struct bake *bake, struct v3 from, struct v3 way, uint64_t key,
+		 struct bake_end *out);
 int bake_links(struct bake *bake);
 /* A direction about a normal, by the cosine. */
 struct v3 bake_cosine(struct v3 normal, const float u[2]);

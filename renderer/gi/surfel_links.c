@@ -84,23 +84,27 @@ struct v3 bake_cosine(struct v3 normal, const float u[2])
 						  sqrtf(fmaxf(1 - u[0], 0)) });
 }
 
-static uint32_t follow(const struct bake *bake, struct v3 from, struct v3 way)
+void bake_follow(const struct bake *bake, struct v3 from, struct v3 way, uint64_t key,
+		 struct bake_end *out)
 {
 	float at[3], to[3];
 	struct ray_hit hit;
 	uint32_t side;
 
+	(void)key;
+	*out = (struct bake_end){ .surfel = SURFEL_NONE };
 	v3_put(from, at);
 	v3_put(way, to);
 	if (!rays_nearest(bake->rays, at, to, INFINITY, &hit))
-		return SURFEL_NONE;
+		return;
 	side = 2 * hit.triangle;
 	if (v3_dot(v3_of(hit.normal), way) > 0) {
-		if (!bake->two_sided[hit.triangle])
-			return SURFEL_NONE;
+		out->back = !bake->two_sided[hit.triangle];
+		if (out->back)
+			return;
 		side++;
 	}
-	return bake_surfel_at(bake, v3_ahead(from, way, hit.distance), side);
+	out->surfel = bake_surfel_at(bake, v3_ahead(from, way, hit.distance), side);
 }
 
 static void link_all(void *ctx, size_t begin, size_t end, int thread)
@@ -113,16 +117,17 @@ static void link_all(void *ctx, size_t begin, size_t end, int thread)
 		uint64_t key = random_start(bake->params.seed, i);
 
 		for (uint32_t j = 0; j < set->links_each; j++) {
-			float u[3];
 			const struct bake_point *p;
+			struct bake_end found;
 			struct v3 n;
+			float u[3];
 
 			sobol_point(key, j, u);
 			p = &bake->points[bake_patch_point(bake, i, u[2])];
 			n = bake_normal(bake, p->side);
-			set->links[i * set->links_each + j] =
-				follow(bake, v3_ahead(p->position, n, bake->offset),
-				       bake_cosine(n, u));
+			bake_follow(bake, v3_ahead(p->position, n, bake->offset), bake_cosine(n, u),
+				    random_mix(key + j), &found);
+			set->links[i * set->links_each + j] = found.surfel;
 		}
 	}
 }

@@ -30,7 +30,7 @@
 #define SURFEL_SECTORS 16     /* of the directions across a surfel's normal */
 #define SURFEL_NONE UINT32_MAX /* a link that brings nothing: out of the scene, onto an unlit back, absorbed */
 #define SURFEL_PROBE_SIDE 16  /* texels along a side of a probe's map of distances, octahedral */
-#define SURFEL_SH 9           /* coefficients of three bands */
+#define SURFEL_SH 9           /* coefficients of three bands, real, orthonormal: 1, y, z, x, xy, yz, 3z^2-1, xz, x^2-y^2 */
 
 /* As the GPU reads it, 32 bytes. */
 struct surfel {
@@ -86,7 +86,11 @@ struct surfel_probes {
 	 * emissive surfaces by way of mirrors; what they send straight here shading adds.
 	 */
 	float (*fixed)[SURFEL_SH][3];
-	/* Distances to the surfaces around, metres, for visibility: mean and mean square a texel. */
+	/*
+	 * Distances to the surfaces around, metres, none more than two cells, for
+	 * visibility: mean and mean square a texel. Texel (x, y) holds the directions
+	 * whose octahedral map falls on it: (x + 1/2) / SURFEL_PROBE_SIDE is 0..1 for -1..1.
+	 */
 	float (*distance)[SURFEL_PROBE_SIDE * SURFEL_PROBE_SIDE][2];
 	uint8_t *alive;
 };
