@@ -1,6 +1,7 @@
 #include "renderer/renderer_private.h"
 
 #include "base/result.h"
+#include "renderer/scene/environment.h"
 
 #include <stdlib.h>
 
@@ -45,10 +46,12 @@ static int create_light(struct renderer *r, const struct emissive_patches *patch
 
 static int create_pictures(struct renderer *r)
 {
-	const struct shade_parts parts = { r->shadow, r->emissive, r->gi };
+	const struct shade_parts parts = { r->shadow, r->emissive, r->gi, &r->backdrop };
 	bool emissive = r->emissive != NULL;
 	int result = gbuffer_program(&r->gbuffer_program, emissive);
 
+	if (result == GR_OK)
+		result = backdrop_init(&r->backdrop, r->scene, r->file);
 	if (result == GR_OK)
 		result = shade_program(&r->shade_program, &parts, r->params.keep_radiance);
 	for (int i = 0; i < r->eye_count && result == GR_OK; i++) {
@@ -74,6 +77,21 @@ static int create_pictures(struct renderer *r)
 	return result;
 }
 
+static void log_environment(const struct renderer *r)
+{
+	enum scene_gi_method method = r->file->gi.method;
+	char text[256];
+
+	if (!r->scene->environment)
+		return;
+	environment_describe(r->scene->environment, text, sizeof text);
+	gr_info("environment: %s", text);
+	if (method == SCENE_GI_NONE || method == SCENE_GI_LPV)
+		gr_warning("the environment is seen, but lights no surface: gi.method = \"%s\" takes "
+			   "none of its light; surfels and probes do",
+			   method == SCENE_GI_NONE ? "none" : "lpv");
+}
+
 static void log_stages(const struct renderer *r, const struct emissive_patches *patches)
 {
 	if (r->shadow)
@@ -97,6 +115,7 @@ static void log_stages(const struct renderer *r, const struct emissive_patches *
 		gr_info("stage gi: none, %s",
 			r->file->gi.method == SCENE_GI_NONE ? "the scene file asks for none"
 							    : "there is no lamp and nothing emits");
+	log_environment(r);
 	gr_info("stages gbuffer and shade: %d picture%s of %d x %d, drawn when the eye or the "
 		"light changes",
 		r->eye_count, r->eye_count > 1 ? "s" : "", r->params.width, r->params.height);
@@ -151,6 +170,7 @@ void renderer_destroy(struct renderer **renderer)
 	glDeleteBuffers(1, &r->frame_buffer);
 	timers_destroy(&r->timers);
 	tone_destroy(&r->tone);
+	backdrop_finish(&r->backdrop);
 	for (int i = 0; i < EYES_MAX; i++) {
 		shade_picture_finish(&r->eyes[i].picture);
 		gbuffer_finish(&r->eyes[i].gbuffer);

@@ -26,7 +26,7 @@ static void store_frame_block(struct renderer *r)
 
 	memcpy(block.bounds_min, r->scene->min, sizeof(r->scene->min));
 	memcpy(block.bounds_max, r->scene->max, sizeof(r->scene->max));
-	memcpy(block.background, r->file->background, sizeof(r->file->background));
+	memcpy(block.background, r->backdrop.radiance, sizeof(block.background));
 	glNamedBufferSubData(r->frame_buffer, 0, sizeof(block), &block);
 }
 
@@ -149,7 +149,7 @@ static int eye_view(const struct renderer *r, int index, const struct render_fra
 static int draw_eye(struct renderer *r, int index, const struct render_frame *frame,
 		    const struct scene_camera *camera, bool light_changed, bool *drawn)
 {
-	const struct shade_parts parts = { r->shadow, r->emissive, r->gi };
+	const struct shade_parts parts = { r->shadow, r->emissive, r->gi, &r->backdrop };
 	struct renderer_eye *eye = &r->eyes[index];
 	mat4 view_projection;
 	vec3 position;
@@ -175,8 +175,8 @@ static int draw_eye(struct renderer *r, int index, const struct render_frame *fr
 	}
 	if (moved || light_changed) {
 		timers_begin(r->timers, STAGE_SHADE, "shade");
-		shade_draw(&eye->picture, r->shade_program, &parts, &eye->gbuffer, position,
-			   r->gi_on);
+		shade_draw(&eye->picture, r->shade_program, &parts, &eye->gbuffer, view_projection,
+			   position, r->gi_on);
 		timers_end(r->timers, STAGE_SHADE);
 		*drawn = true;
 	}

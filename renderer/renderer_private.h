@@ -7,6 +7,7 @@
 #include "renderer/gl/program.h"
 #include "renderer/renderer.h"
 #include "renderer/tone/tone.h"
+#include "renderer/view/backdrop.h"
 #include "renderer/view/emissive.h"
 #include "renderer/view/eyes.h"
 #include "renderer/view/gbuffer.h"
@@ -36,6 +37,7 @@ struct renderer {
 	struct shadow_stage *shadow;     /* NULL: no lamps */
 	struct emissive_stage *emissive; /* NULL: nothing emits */
 	struct gi_method *gi;            /* NULL: none */
+	struct backdrop backdrop;
 	struct tone_stage *tone;
 	struct timers *timers;
 	unsigned gbuffer_program, shade_program;

@@ -40,10 +40,32 @@ tests_unit_test_mesh_SOURCES = tests/unit/test_mesh.c tests/unit/unit.h tests/un
 tests_unit_test_mesh_CFLAGS = $(GL_TEST_CFLAGS)
 tests_unit_test_mesh_LDADD = $(GL_TEST_LIBS)
 
+check_PROGRAMS += tests/unit/test_environment
+TESTS += tests/unit/test_environment
+tests_unit_test_environment_SOURCES = tests/unit/test_environment.c tests/unit/unit.h tests/unit/shared.h
+tests_unit_test_environment_CFLAGS = $(GL_TEST_CFLAGS)
+tests_unit_test_environment_LDADD = $(GL_TEST_LIBS)
+
+check_PROGRAMS += tests/unit/test_brdf
+TESTS += tests/unit/test_brdf
+tests_unit_test_brdf_SOURCES = tests/unit/test_brdf.c tests/unit/unit.h tests/unit/shared.h
+tests_unit_test_brdf_CFLAGS = $(GL_TEST_CFLAGS)
+tests_unit_test_brdf_LDADD = $(GL_TEST_LIBS)
+
+check_PROGRAMS += tests/unit/test_surfaces
+TESTS += tests/unit/test_surfaces
+tests_unit_test_surfaces_SOURCES = tests/unit/test_surfaces.c tests/unit/unit.h tests/unit/glb.h
+tests_unit_test_surfaces_CFLAGS = $(GL_TEST_CFLAGS)
+tests_unit_test_surfaces_LDADD = $(GL_TEST_LIBS)
+
 if FUZZERS
-noinst_PROGRAMS += tests/fuzz/fuzz_exr tests/fuzz/fuzz_glb tests/fuzz/fuzz_scene_block \
+noinst_PROGRAMS += tests/fuzz/fuzz_brdf tests/fuzz/fuzz_exr tests/fuzz/fuzz_glb tests/fuzz/fuzz_scene_block \
 	tests/fuzz/fuzz_texture
 endif
+tests_fuzz_fuzz_brdf_SOURCES = tests/fuzz/fuzz_brdf.c
+tests_fuzz_fuzz_brdf_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS)
+tests_fuzz_fuzz_brdf_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_brdf_LDADD = $(RENDERER_LIBS)
 tests_fuzz_fuzz_exr_SOURCES = tests/fuzz/fuzz_exr.c
 tests_fuzz_fuzz_exr_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS)
 tests_fuzz_fuzz_exr_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
@@ -63,6 +85,8 @@ tests_fuzz_fuzz_texture_LDADD = $(RENDERER_LIBS)
 
 # What the fuzzers of renderer/scene and renderer/image start from.
 EXTRA_DIST += \
+	tests/fuzz/corpus/brdf/small.brdf \
+	tests/fuzz/corpus/brdf/cut.brdf \
 	tests/fuzz/corpus/exr/zip-float.exr \
 	tests/fuzz/corpus/glb/image-type.glb \
 	tests/fuzz/corpus/glb/textured.glb \

@@ -40,3 +40,9 @@ TESTS += tests/accuracy/test_rsm
 tests_accuracy_test_rsm_SOURCES = tests/accuracy/test_rsm.c $(VIEW_TEST_SHARED)
 tests_accuracy_test_rsm_CFLAGS = $(VIEW_TEST_CFLAGS)
 tests_accuracy_test_rsm_LDADD = $(VIEW_TEST_LIBS)
+
+check_PROGRAMS += tests/accuracy/test_backdrop
+TESTS += tests/accuracy/test_backdrop
+tests_accuracy_test_backdrop_SOURCES = tests/accuracy/test_backdrop.c $(VIEW_TEST_SHARED)
+tests_accuracy_test_backdrop_CFLAGS = $(VIEW_TEST_CFLAGS)
+tests_accuracy_test_backdrop_LDADD = $(VIEW_TEST_LIBS)

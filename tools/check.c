@@ -3,6 +3,8 @@
 #include "config/layout.h"
 #include "config/scene_file.h"
 #include "protocol/key.h"
+#include "renderer/scene/brdf_table.h"
+#include "renderer/scene/environment.h"
 #include "renderer/scene/scene.h"
 #include "tools/command.h"
 #include "tools/cli.h"
@@ -93,6 +95,32 @@ static void check_layout(const char *path, struct gr_diag *diag)
 	layout_destroy(&layout);
 }
 
+/* Tables and environment: what is in them, so that a wrong file is seen. */
+static void report_surfaces(const char *path, const struct scene *scene, struct gr_diag *diag)
+{
+	char text[256];
+
+	for (size_t i = 0; i < scene->material_count; i++) {
+		const struct scene_material *m = &scene->materials[i];
+		const struct brdf_table_facts *f;
+
+		if (m->kind != MATERIAL_MEASURED)
+			continue;
+		f = brdf_table_facts(scene->tables[m->table]);
+		gr_diag_add(diag, GR_DIAG_NOTE, path, 0, m->name,
+			    "measured: %zu samples of %zu wavelengths, reflectance %.3f %.3f %.3f, "
+			    "along the normal %.3f %.3f %.3f; %zu values below 0, %zu colours cut at 0, "
+			    "the samples met within %.0f %% (rms)", f->samples, f->wavelengths,
+			    (double)f->reflectance[0], (double)f->reflectance[1],
+			    (double)f->reflectance[2], (double)f->normal[0], (double)f->normal[1],
+			    (double)f->normal[2], f->below_zero, f->cut, 100 * (double)f->misfit);
+	}
+	if (scene->environment) {
+		environment_describe(scene->environment, text, sizeof text);
+		gr_diag_add(diag, GR_DIAG_NOTE, path, 0, "environment", "%s", text);
+	}
+}
+
 static void report_scene(const char *path, const struct scene_file *file,
 			 const struct scene *scene, struct gr_diag *diag)
 {
@@ -111,6 +139,7 @@ static void report_scene(const char *path, const struct scene_file *file,
 		    "bounds %.3f %.3f %.3f to %.3f %.3f %.3f m", (double)scene->min[0],
 		    (double)scene->min[1], (double)scene->min[2], (double)scene->max[0],
 		    (double)scene->max[1], (double)scene->max[2]);
+	report_surfaces(path, scene, diag);
 	if (dropped > 0)
 		gr_diag_add(diag, GR_DIAG_WARNING, path, 0, "model",
 			    "%zu triangles dropped: %zu not finite, %zu without area, "

@@ -98,7 +98,7 @@ struct gi_method_ops {
 	 */
 	int (*update)(struct gi_method *method, const struct render_frame *frame,
 		      const struct gi_light *light);
-	/* Binds what shader_name's function reads: texture units and buffers from 8 on. */
+	/* Binds what shader_name's function reads: texture units 8 to 14, buffers from 8 on. */
 	void (*bind)(const struct gi_method *method);
 	/*
 	 * GLSL file that defines: vec3 gi_irradiance(vec3 position, vec3 normal)

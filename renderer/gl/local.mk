@@ -8,13 +8,18 @@ RENDERER_SOURCES += \
 	renderer/image/exr_private.h renderer/image/exr_read.c renderer/image/exr_write.c \
 	renderer/image/image.c renderer/image/image.h renderer/image/png.c \
 	renderer/image/read_file.c renderer/image/read_file.h \
+	renderer/scene/brdf_color.c renderer/scene/brdf_private.h \
+	renderer/scene/brdf_read.c renderer/scene/brdf_read.h \
+	renderer/scene/brdf_sampling.c renderer/scene/brdf_table.c renderer/scene/brdf_table.h \
+	renderer/scene/environment.c renderer/scene/environment.h \
 	renderer/scene/gltf.c renderer/scene/gltf.h renderer/scene/gltf_pack.c \
 	renderer/scene/gltf_schema.c renderer/scene/import.c renderer/scene/import.h \
 	renderer/scene/import_geometry.c renderer/scene/import_image.c \
 	renderer/scene/import_material.c renderer/scene/isolate.c renderer/scene/isolate.h \
 	renderer/scene/scene.c renderer/scene/scene.h \
 	renderer/scene/scene_block.c renderer/scene/scene_block.h \
-	renderer/scene/scene_import.c renderer/scene/texture.c
+	renderer/scene/scene_hash.c renderer/scene/scene_import.c \
+	renderer/scene/scene_surface.c renderer/scene/scene_surface.h renderer/scene/texture.c
 
 SHADERS += renderer/shaders/material.glsl
 EXTRA_DIST += renderer/shaders/embed.awk renderer/shaders/resolve.awk renderer/shaders/check.sh

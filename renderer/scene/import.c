@@ -17,67 +17,12 @@
 #include <assimp/postprocess.h>
 #include <errno.h>
 #include <signal.h>
-#include <sodium.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 /* Where normals are made up, edges sharper than this stay edges. */
 #define SMOOTH_DEGREES 60.0f
-
-static void hash_u64(crypto_generichash_state *state, uint64_t value)
-{
-	uint8_t bytes[8];
-
-	for (int i = 0; i < 8; i++)
-		bytes[i] = (uint8_t)(value >> (8 * i));
-	crypto_generichash_update(state, bytes, sizeof bytes);
-}
-
-static void hash_bytes(crypto_generichash_state *state, const void *bytes, size_t len)
-{
-	hash_u64(state, len);
-	if (len)
-		crypto_generichash_update(state, bytes, len);
-}
-
-static void hash_material(crypto_generichash_state *state, const struct scene_material *m)
-{
-	hash_bytes(state, m->diffuse, sizeof m->diffuse);
-	hash_bytes(state, m->specular, sizeof m->specular);
-	hash_bytes(state, &m->shininess, sizeof m->shininess);
-	hash_bytes(state, m->emission, sizeof m->emission);
-	hash_u64(state, (uint64_t)(int64_t)m->diffuse_image);
-	hash_u64(state, (uint64_t)(int64_t)m->emission_image);
-	hash_u64(state, (uint64_t)m->two_sided | (uint64_t)m->tinted_specular << 1);
-}
-
-/* Field by field: structs have padding, and names and paths are no content. */
-static void hash_scene(struct scene *scene)
-{
-	crypto_generichash_state state;
-
-	crypto_generichash_init(&state, NULL, 0, sizeof scene->hash);
-	hash_bytes(&state, scene->vertices, scene->vertex_count * sizeof scene->vertices[0]);
-	hash_bytes(&state, scene->indices, scene->index_count * sizeof scene->indices[0]);
-	hash_u64(&state, scene->draw_count);
-	for (size_t i = 0; i < scene->draw_count; i++) {
-		hash_u64(&state, scene->draws[i].first_index);
-		hash_u64(&state, scene->draws[i].index_count);
-		hash_u64(&state, scene->draws[i].material);
-	}
-	hash_u64(&state, scene->material_count);
-	for (size_t i = 0; i < scene->material_count; i++)
-		hash_material(&state, &scene->materials[i]);
-	hash_u64(&state, scene->image_count);
-	for (size_t i = 0; i < scene->image_count; i++) {
-		const struct scene_image *image = &scene->images[i];
-
-		hash_u64(&state, (uint64_t)image->width << 1 | image->srgb);
-		hash_bytes(&state, image->rgba, (size_t)image->width * (size_t)image->height * 4);
-	}
-	crypto_generichash_final(&state, scene->hash, sizeof scene->hash);
-}
 
 /* assimp knows many more forms, and guesses at unknown endings: fewer ways in. */
 static int check_name(const char *path, struct gr_diag *diag)
@@ -291,7 +236,7 @@ static int import_guarded(struct guarded *g, struct scene **out, struct gr_diag 
 	}
 	isolate_finish(&end);
 	if (result == GR_OK)
-		hash_scene(*out);
+		scene_hash(*out);
 	return result;
 }
 

@@ -409,10 +409,6 @@ int import_geometry(struct import *import)
 				    scene->dropped_index);
 		return GR_ERR_CONFIG;
 	}
-	for (size_t i = 0; i < scene->draw_count; i++) {
-		const float *e = scene->materials[scene->draws[i].material].emission;
-
-		scene->emissive = scene->emissive || e[0] > 0.0f || e[1] > 0.0f || e[2] > 0.0f;
-	}
+	scene_note_emission(scene);
 	return result;
 }

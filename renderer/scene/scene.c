@@ -1,8 +1,9 @@
 #include "renderer/scene/scene.h"
 
-#include <sodium.h>
+#include "renderer/scene/brdf_table.h"
+#include "renderer/scene/environment.h"
+
 #include <stdlib.h>
-#include <string.h>
 
 void scene_destroy(struct scene **scene)
 {
@@ -14,6 +15,10 @@ void scene_destroy(struct scene **scene)
 		free(s->images[i].name);
 		free(s->images[i].rgba);
 	}
+	for (size_t i = 0; i < s->table_count; i++)
+		brdf_table_destroy(&s->tables[i]);
+	environment_destroy(&s->environment);
+	free(s->tables);
 	free(s->images);
 	free(s->materials);
 	free(s->draws);
@@ -23,13 +28,12 @@ void scene_destroy(struct scene **scene)
 	*scene = NULL;
 }
 
-void scene_content_hash(const struct scene_file *file, const struct scene *scene,
-			uint8_t out[32])
+void scene_note_emission(struct scene *scene)
 {
-	crypto_generichash_state state;
+	scene->emissive = false;
+	for (size_t i = 0; i < scene->draw_count; i++) {
+		const float *e = scene->materials[scene->draws[i].material].emission;
 
-	crypto_generichash_init(&state, NULL, 0, 32);
-	crypto_generichash_update(&state, file->hash, sizeof file->hash);
-	crypto_generichash_update(&state, scene->hash, sizeof scene->hash);
-	crypto_generichash_final(&state, out, 32);
+		scene->emissive = scene->emissive || e[0] > 0.0f || e[1] > 0.0f || e[2] > 0.0f;
+	}
 }

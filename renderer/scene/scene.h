@@ -90,11 +90,15 @@ struct scene {
 
 /*
  * Imports the model that the scene file names (glTF, OBJ, FBX, Collada through
- * assimp). What is missing, truncated or unsupported is named in diag:
+ * assimp), gives its materials what the file says of them instead, and loads the
+ * environment. What is missing, truncated or unsupported is named in diag:
  * GR_ERR_CONFIG, *out NULL.
  */
 int scene_import(const struct scene_file *file, struct scene **out, struct gr_diag *diag);
 void scene_destroy(struct scene **scene);
+/* Fills `emissive` and `hash` from the rest, after a change to materials. */
+void scene_note_emission(struct scene *scene);
+void scene_hash(struct scene *scene);
 /* The hash that nodes compare at join: scene file and model content together. */
 void scene_content_hash(const struct scene_file *file, const struct scene *scene,
 			uint8_t out[32]);

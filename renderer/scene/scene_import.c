@@ -1,7 +1,8 @@
 /* From a scene file; apart from import.c so that the importer does not need config/. */
-#include "renderer/scene/import.h"
-
 #include "base/result.h"
+#include "renderer/scene/environment.h"
+#include "renderer/scene/import.h"
+#include "renderer/scene/scene_surface.h"
 
 #include <stdlib.h>
 
@@ -13,12 +14,24 @@ int scene_import(const struct scene_file *file, struct scene **out, struct gr_di
 		.double_sided = file->double_sided,
 	};
 	char *path = scene_file_model_path(file);
-	int result;
+	int result, environment;
 
 	*out = NULL;
 	if (!path)
 		return GR_ERR_NOMEM;
 	result = import_model(path, &options, out, diag);
 	free(path);
-	return result;
+	if (result != GR_OK)
+		return result;
+	result = scene_apply_surfaces(*out, file, diag);
+	environment = environment_create(&(*out)->environment, file, diag);
+	if (environment < 0)
+		result = environment;
+	if (result != GR_OK) {
+		scene_destroy(out);
+		return result;
+	}
+	scene_note_emission(*out);
+	scene_hash(*out);
+	return GR_OK;
 }

@@ -7,7 +7,7 @@ layout(std140, binding = 1) uniform Frame {
 	vec4 medium;     // x: log2(1 - absorption - scattering), y: log2(1 - absorption)
 	vec4 bounds_min; // of the scene, metres
 	vec4 bounds_max;
-	vec4 background; // rgb radiance, W/(m^2 sr)
+	vec4 background; // rgb radiance, W/(m^2 sr); a: 1 when only from above the horizon
 } frame;
 
 const float PI = 3.14159265358979;

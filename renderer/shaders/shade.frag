@@ -4,6 +4,8 @@
 // check: #define LAMPS
 // check: #define EMISSIVE
 // check: #define KEEP_INDIRECT
+// check: #define BACKDROP
+// check: #define BACKDROP_IMAGE
 // check: #define GI_SHADER "gi_none.glsl"
 #include "medium.glsl"
 #ifdef LAMPS
@@ -20,6 +22,9 @@
 #include "patch_shadow.glsl"
 #endif
 #include GI_SHADER
+#ifdef BACKDROP
+#include "backdrop.glsl"
+#endif
 
 layout(binding = 0) uniform sampler2D position_image;
 layout(binding = 1) uniform sampler2D normal_image;
@@ -102,7 +107,7 @@ void main()
 	ivec2 at = ivec2(gl_FragCoord.xy);
 	vec4 position = texelFetch(position_image, at, 0);
 	vec3 indirect = vec3(0.0);
-	vec3 radiance = frame.background.rgb;
+	vec3 radiance = vec3(0.0);
 
 	if (position.a >= 0.0) {
 		Point p;
@@ -116,7 +121,6 @@ void main()
 		p.to_eye = to_eye / seen_from;
 		p.diffuse = texelFetch(diffuse_image, at, 0).rgb;
 		p.specular = texelFetch(specular_image, at, 0).rgb;
-		radiance = vec3(0.0);
 		if (indirect_on != 0)
 			indirect = p.diffuse / PI * gi_irradiance(p.position, p.normal) * thinned;
 #ifdef LAMPS
@@ -126,6 +130,13 @@ void main()
 		radiance += from_patches(p) + texelFetch(emission_image, at, 0).rgb;
 #endif
 		radiance = radiance * thinned + indirect;
+	} else {
+#ifdef BACKDROP
+		radiance = backdrop_radiance(2.0 * gl_FragCoord.xy / vec2(textureSize(position_image, 0)) -
+					     1.0);
+#else
+		radiance = frame.background.rgb;
+#endif
 	}
 	out_radiance = vec4(radiance, 1.0);
 #ifdef KEEP_INDIRECT

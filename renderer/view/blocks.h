@@ -23,6 +23,7 @@ enum view_unit {
 	VIEW_UNIT_LAMP_COMPARE = 5,
 	VIEW_UNIT_LAMP_DEPTH = 6,
 	VIEW_UNIT_PATCH_DEPTH = 7,
+	VIEW_UNIT_BACKDROP = 15, /* those between belong to the global illumination */
 };
 
 /* Layers of the largest block: sixteen cubes. The shaders' arrays have fixed sizes. */
@@ -32,7 +33,7 @@ enum view_unit {
 struct frame_block {
 	float medium[4]; /* log2 transmittance per metre: extinction, absorption */
 	float bounds_min[4], bounds_max[4];
-	float background[4];
+	float background[4]; /* radiance; a: 1 when only from above the horizon */
 };
 
 /* Lamp in shaders/lamp.glsl. */

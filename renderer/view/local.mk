@@ -1,6 +1,7 @@
 # renderer/view, renderer/tone
 RENDERER_SOURCES += \
 	renderer/tone/tone.c renderer/tone/tone.h \
+	renderer/view/backdrop.c renderer/view/backdrop.h \
 	renderer/view/blocks.h \
 	renderer/view/emissive.c renderer/view/emissive.h \
 	renderer/view/eyes.c renderer/view/eyes.h \
@@ -12,6 +13,7 @@ RENDERER_SOURCES += \
 	renderer/view/shade.c renderer/view/shade.h \
 	renderer/view/shadow.c renderer/view/shadow.h
 SHADERS += \
+	renderer/shaders/backdrop.glsl \
 	renderer/shaders/depth.vert renderer/shaders/gbuffer.frag \
 	renderer/shaders/gi_none.glsl renderer/shaders/lamp.glsl \
 	renderer/shaders/lamp_shadow.glsl renderer/shaders/medium.glsl \

@@ -58,16 +58,16 @@ int shade_program(unsigned *out_program, const struct shade_parts *parts, bool k
 {
 	char defines[512];
 
-	snprintf(defines, sizeof(defines), "%s%s%s#define GI_SHADER \"%s\"\n",
+	snprintf(defines, sizeof(defines), "%s%s%s%s#define GI_SHADER \"%s\"\n",
 		 parts->shadow ? "#define LAMPS\n" : "", parts->emissive ? "#define EMISSIVE\n" : "",
-		 keep_indirect ? "#define KEEP_INDIRECT\n" : "",
+		 keep_indirect ? "#define KEEP_INDIRECT\n" : "", backdrop_defines(parts->backdrop),
 		 parts->gi ? parts->gi->ops->shader_name : "gi_none.glsl");
 	return program_create_graphics(out_program, "screen.vert", NULL, "shade.frag", defines);
 }
 
 void shade_draw(const struct shade_picture *picture, unsigned program,
-		const struct shade_parts *parts, const struct gbuffer *gbuffer, const float eye[3],
-		bool indirect)
+		const struct shade_parts *parts, const struct gbuffer *gbuffer,
+		const mat4 view_projection, const float eye[3], bool indirect)
 {
 	glBindFramebuffer(GL_FRAMEBUFFER, picture->framebuffer);
 	glViewport(0, 0, picture->width, picture->height);
@@ -85,6 +85,7 @@ void shade_draw(const struct shade_picture *picture, unsigned program,
 	glUseProgram(program);
 	glUniform3f(1, eye[0], eye[1], eye[2]);
 	glUniform1i(2, indirect && parts->gi);
+	backdrop_bind(parts->backdrop, view_projection, eye);
 	glDrawArrays(GL_TRIANGLES, 0, 3);
 	/* a sampler stays with its unit: the next pass may use that */
 	glBindSampler(VIEW_UNIT_LAMP_COMPARE, 0);

@@ -10,6 +10,7 @@
 #define GROTTO_RENDERER_VIEW_SHADE_H
 
 #include "renderer/gi/gi.h"
+#include "renderer/view/backdrop.h"
 #include "renderer/view/emissive.h"
 #include "renderer/view/gbuffer.h"
 #include "renderer/view/shadow.h"
@@ -18,6 +19,7 @@ struct shade_parts {
 	const struct shadow_stage *shadow;     /* NULL: the scene has none; as the others */
 	const struct emissive_stage *emissive;
 	const struct gi_method *gi;
+	const struct backdrop *backdrop; /* never NULL */
 };
 
 /* What is kept of one eye. */
@@ -30,9 +32,12 @@ struct shade_picture {
 int shade_picture_init(struct shade_picture *picture, int width, int height, bool keep_indirect);
 void shade_picture_finish(struct shade_picture *picture);
 int shade_program(unsigned *out_program, const struct shade_parts *parts, bool keep_indirect);
-/* indirect: false leaves the global illumination out of this frame. */
+/*
+ * view_projection and eye as the G-buffer was drawn; indirect: false leaves the
+ * global illumination out of this frame.
+ */
 void shade_draw(const struct shade_picture *picture, unsigned program,
-		const struct shade_parts *parts, const struct gbuffer *gbuffer, const float eye[3],
-		bool indirect);
+		const struct shade_parts *parts, const struct gbuffer *gbuffer,
+		const mat4 view_projection, const float eye[3], bool indirect);
 
 #endif
