@@ -28,28 +28,24 @@ static double unit_cosine(double c)
 	return c < -1 ? -1 : c > 1 ? 1 : c;
 }
 
-/* Rusinkiewicz' angles of two directions above the horizon. */
+/*
+ * Rusinkiewicz' angles of two directions above the horizon, from their sum and
+ * difference: so that swapping the two changes no bit.
+ */
 static struct angles angles_of(const double i[3], const double o[3])
 {
-	double h[3] = { i[0] + o[0], i[1] + o[1], i[2] + o[2] };
-	double length = sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
-	struct angles a = { 0 };
-	double across, along;
+	const double h[3] = { i[0] + o[0], i[1] + o[1], i[2] + o[2] };
+	const double d[3] = { i[0] - o[0], i[1] - o[1], i[2] - o[2] };
+	double across2 = h[0] * h[0] + h[1] * h[1], length = sqrt(across2 + h[2] * h[2]);
+	/* d along n x h and along h x (n x h), the half vector's other axes. */
+	double across = h[0] * d[1] - h[1] * d[0];
+	double along = length > 0 ? ((h[0] * d[0] + h[1] * d[1]) * h[2] - d[2] * across2) / length : 0;
 
-	if (!(length > 1e-9)) { /* opposite, along the horizon */
-		a.difference = M_PI / 2;
-		return a;
-	}
-	for (int k = 0; k < 3; k++)
-		h[k] /= length;
-	a.half = acos(unit_cosine(h[2]));
-	a.difference = acos(unit_cosine(i[0] * h[0] + i[1] * h[1] + i[2] * h[2]));
-	/* i in the half vector's frame: its axes are n x h and h x (n x h). */
-	across = h[0] * i[1] - h[1] * i[0];
-	along = (h[0] * i[0] + h[1] * i[1]) * h[2] - i[2] * (h[0] * h[0] + h[1] * h[1]);
-	/* The same with the two swapped, and in the mirror. */
-	a.azimuth = atan2(fabs(across), fabs(along));
-	return a;
+	return (struct angles){
+		.half = atan2(sqrt(across2), h[2]),
+		.difference = atan2(sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), length),
+		.azimuth = atan2(fabs(across), fabs(along)),
+	};
 }
 
 static struct angles angles_between(double theta_i, double theta_o, double phi)
