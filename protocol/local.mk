@@ -8,13 +8,16 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/master_join.c \
 	protocol/master_receive.c \
 	protocol/master_repair.c \
+	protocol/master_share.c \
 	protocol/message.c protocol/message.h \
 	protocol/node.c protocol/node.h protocol/node_private.h \
 	protocol/node_frame.c \
+	protocol/node_share.c \
 	protocol/outbox.c protocol/outbox.h \
 	protocol/pack.c protocol/pack.h \
 	protocol/params.c protocol/params.def protocol/params.h protocol/state.h \
 	protocol/peer.c protocol/peer.h \
 	protocol/replay.h \
+	protocol/share.c protocol/share.h \
 	protocol/wire.c protocol/wire.h
 protocol_libgprotocol_a_CFLAGS = $(AM_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS)

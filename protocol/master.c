@@ -17,6 +17,7 @@ _Static_assert(FDP_HEADER_BYTES + FDP_BODY_MAX <= FDP_DATAGRAM_MIN,
 #define BIT(node) (UINT64_C(1) << (node))
 #define MASTER_KINDS (1u << FDP_JOIN | 1u << FDP_ACK | 1u << FDP_NACK | 1u << FDP_READY | \
 		      1u << FDP_SWAPPED | 1u << FDP_LEAVE)
+#define SHARE_KINDS (1u << FDP_SLICE | 1u << FDP_LACK)
 
 static void to_caller(void *ctx, int to, const uint8_t *bytes, size_t len)
 {
@@ -90,7 +91,7 @@ int fdp_master_create(struct fdp_master **out, const struct fdp_master_params *p
 	m->gate = (struct fdp_gate){
 		.key = m->params.key,
 		.session = params->session,
-		.kinds = MASTER_KINDS,
+		.kinds = MASTER_KINDS | (params->share_bytes ? SHARE_KINDS : 0),
 		.any_session_kinds = 1u << FDP_JOIN,
 		.any_version_kinds = 1u << FDP_JOIN,
 		.first_sender = 0,
@@ -110,6 +111,8 @@ int fdp_master_create(struct fdp_master **out, const struct fdp_master_params *p
 	result = fdp_outbox_init(&m->out);
 	if (!result)
 		result = param_state_create(&m->state);
+	if (!result)
+		result = fdp_share_init(&m->share, params->share_bytes);
 	if (result) {
 		fdp_master_destroy(&m);
 		return result;
@@ -128,6 +131,7 @@ void fdp_master_destroy(struct fdp_master **master)
 	if (!m)
 		return;
 	fdp_outbox_finish(&m->out);
+	fdp_share_finish(&m->share);
 	param_state_destroy(&m->state);
 	sodium_memzero(m->params.key, sizeof m->params.key);
 	free(m);
@@ -136,7 +140,7 @@ void fdp_master_destroy(struct fdp_master **master)
 void fdp_master_announce(struct fdp_master *m, int to, enum fdp_kind kind)
 {
 	const bool delta = m->delta.number && m->delta.frame == m->frame;
-	const struct fdp_announce a = {
+	struct fdp_announce a = {
 		.frame = m->frame,
 		.swapped = m->swapped,
 		.message = delta ? m->delta.number : 0,
@@ -146,6 +150,7 @@ void fdp_master_announce(struct fdp_master *m, int to, enum fdp_kind kind)
 		.flags = fdp_master_twice(m) ? FDP_TWICE : 0,
 	};
 
+	fdp_master_say_slices(m, kind, &a);
 	fdp_outbox_send(&m->out, to, kind,
 			fdp_announce_encode(&a, fdp_outbox_body(&m->out), FDP_BODY_MAX));
 }
@@ -172,6 +177,8 @@ void fdp_master_write_state(struct fdp_master *m, struct fdp_letter *letter, enu
 		.live = fdp_master_mask(m, fdp_peer_counts),
 		.present = fdp_master_mask(m, fdp_peer_present),
 		.flags = fdp_master_twice(m) ? FDP_TWICE : 0,
+		.shared = m->share.since ? m->shared : 0,
+		.shared_since = m->share.since,
 	};
 	const size_t at = fdp_state_head_encode(&head, letter->bytes, FDP_STATE_HEAD_BYTES);
 	/* Cannot fail: the static assertions above. */
@@ -261,6 +268,7 @@ int fdp_master_begin(struct fdp_master *m, const struct param_state *state, uint
 	m->probe_at = now_ns + m->params.probe_ns;
 	m->probes = 0;
 	fdp_master_begin_repairs(m);
+	fdp_master_share_begin(m, live);
 	if (live) {
 		fdp_master_write_state(m, &m->delta, FDP_DELTA, common_base(m, live));
 		send_delta_to(m, live);

@@ -23,6 +23,7 @@
 #define FDP_MAX_NODES 64
 #define FDP_TO_ALL (-1)
 #define FDP_REASON_MAX 160
+#define FDP_SHARE_MAX (4u << 20) /* bytes of the light that nodes share out, all slices together */
 
 enum fdp_peer_state {
 	FDP_PEER_ABSENT,  /* never heard of, or left */
@@ -62,6 +63,8 @@ struct fdp_master_params {
 	int64_t probe_ns;    /* ask who has not acknowledged after this; 0: deadline/8, 5 ms at most */
 	unsigned evict_frames;
 	bool multicast; /* FDP_TO_ALL is one send on the wire, not one a node */
+	/* Room for the light that nodes share out, all slices together; 0: none is, slices are bad. At most FDP_SHARE_MAX. */
+	size_t share_bytes;
 };
 
 struct fdp_master_ops {
@@ -84,6 +87,21 @@ struct fdp_counters {
 	uint64_t bad_short, bad_version, bad_auth, bad_session, bad_format, bad_replay;
 };
 
+/*
+ * Slices of the light. On a node `sent` are its own, `received` those of the
+ * others that came whole. On the master `received` came whole and were passed
+ * on, `sent` times: once for each node that they went to. bytes_sent are those of
+ * slices on the wire, repairs left out.
+ */
+struct fdp_share_counts {
+	uint64_t sent, bytes_sent;
+	uint64_t received, bytes_received;
+	uint64_t late;   /* node: not whole at the start of the frame that should use it; master: whole after SWAP */
+	uint64_t lost;   /* known of, but never whole: a newer one, or another division, came first */
+	uint64_t asked;  /* LACKs sent */
+	uint64_t repairs; /* pieces sent again */
+};
+
 /* What the status page shows of a node. */
 struct fdp_peer_status {
 	enum fdp_peer_state state;
@@ -97,6 +115,7 @@ struct fdp_peer_status {
 	int64_t swap_local_ns;     /* node's own CLOCK_MONOTONIC when it swapped `swapped_frame` */
 	uint64_t swapped_frame;
 	uint32_t render_us;        /* GPU and CPU time the node says it took */
+	uint64_t slices, slices_late, slice_bytes; /* of the light, from it, whole; after SWAP */
 };
 
 struct fdp_master;
@@ -143,5 +162,7 @@ void fdp_master_leave(struct fdp_master *master, int64_t now_ns);
 uint64_t fdp_master_hash(const struct fdp_master *master);
 void fdp_master_peer(const struct fdp_master *master, size_t node, struct fdp_peer_status *out);
 void fdp_master_counters(const struct fdp_master *master, struct fdp_counters *out);
+/* Also among how many nodes the light is divided in this frame, 0: it is not. */
+unsigned fdp_master_share(const struct fdp_master *master, struct fdp_share_counts *out);
 
 #endif

@@ -1,7 +1,7 @@
 /*
  * Inside the master's half of FDP: master.c has the frame, master_receive.c
  * what arrives, master_join.c who may take part, master_repair.c what is sent
- * again.
+ * again, master_share.c the light that the nodes share out.
  */
 #ifndef GROTTO_PROTOCOL_MASTER_PRIVATE_H
 #define GROTTO_PROTOCOL_MASTER_PRIVATE_H
@@ -12,6 +12,7 @@
 #include "protocol/outbox.h"
 #include "protocol/peer.h"
 #include "protocol/replay.h"
+#include "protocol/share.h"
 #include "protocol/state.h"
 
 #define FDP_HASH_RING 64 /* frames whose hash an ACK may still name */
@@ -25,6 +26,7 @@
 #define FDP_LOSS_EVIDENCE 32
 #define FDP_LOSS_TWICE 64
 #define FDP_LOSS_MAX 256
+#define FDP_SAID_FRAMES 64 /* SWAP says which slices there are until so long after the last change */
 
 struct fdp_peer {
 	enum fdp_peer_state state;
@@ -68,6 +70,12 @@ struct fdp_master {
 	unsigned loss;
 	int64_t probe_at, keepalive_at;
 	unsigned probes; /* in this frame */
+
+	struct fdp_share share;
+	uint64_t shared;         /* nodes among whom it is divided */
+	uint64_t share_changed;  /* frame in which a slice last became whole */
+	/* Bytes that may be passed on of each node, and sent to it again, in this frame. */
+	uint64_t pass_budget[FDP_MAX_NODES], lack_budget[FDP_MAX_NODES];
 };
 
 /* Bit sets over the peers. */
@@ -94,6 +102,18 @@ void fdp_master_on_nack(struct fdp_master *m, unsigned node, const struct fdp_na
 			int64_t now_ns);
 void fdp_master_begin_repairs(struct fdp_master *m);
 void fdp_master_saw_loss(struct fdp_master *m);
+
+/* A frame begins with these nodes: is the division another one? */
+void fdp_master_share_begin(struct fdp_master *m, uint64_t live);
+enum fdp_verdict fdp_master_on_slice(struct fdp_master *m, unsigned node, const uint8_t *body,
+				     size_t len, int64_t now_ns);
+enum fdp_verdict fdp_master_on_lack(struct fdp_master *m, unsigned node, const uint8_t *body,
+				    size_t len);
+/* A node says that it has made a slice of that frame. */
+void fdp_master_note_slice(struct fdp_master *m, unsigned node, uint64_t frame, int64_t now_ns);
+/* Which slices are whole, into a PROBE or SWAP. */
+void fdp_master_say_slices(const struct fdp_master *m, enum fdp_kind kind, struct fdp_announce *a);
+
 static inline bool fdp_master_twice(const struct fdp_master *m)
 {
 	return m->loss >= FDP_LOSS_TWICE;

@@ -88,6 +88,7 @@ static void on_report(struct fdp_master *m, unsigned node, enum fdp_kind kind,
 		status->swapped_frame = report->swapped_frame;
 		status->swap_local_ns = report->swap_ns;
 	}
+	fdp_master_note_slice(m, node, report->slice, now_ns);
 	if (kind == FDP_SWAPPED || !state_agrees(m, node, report, now_ns))
 		return;
 	note_acked(m, node, report);
@@ -121,6 +122,10 @@ static enum fdp_verdict dispatch(struct fdp_master *m, const struct fdp_header *
 			return FDP_BAD_FORMAT;
 		fdp_master_on_leave(m, h->sender, now_ns);
 		return FDP_GOOD;
+	case FDP_SLICE:
+		return fdp_master_on_slice(m, h->sender, body, h->payload_len, now_ns);
+	case FDP_LACK:
+		return fdp_master_on_lack(m, h->sender, body, h->payload_len);
 	default:
 		return FDP_BAD_FORMAT;
 	}

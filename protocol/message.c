@@ -143,6 +143,7 @@ size_t fdp_report_encode(const struct fdp_report *m, uint8_t *bytes, size_t size
 	gr_write_u64(&w, (uint64_t)m->swap_ns);
 	gr_write_u32(&w, m->render_us);
 	gr_write_u32(&w, 0);
+	gr_write_u64(&w, m->slice);
 	return written(&w);
 }
 
@@ -156,7 +157,10 @@ int fdp_report_decode(const uint8_t *bytes, size_t len, struct fdp_report *out)
 	out->swapped_count = gr_read_u64(&r);
 	out->swap_ns = (int64_t)gr_read_u64(&r);
 	out->render_us = gr_read_u32(&r);
-	return gr_read_u32(&r) ? GR_ERR_FORMAT : finished(&r);
+	if (gr_read_u32(&r))
+		return GR_ERR_FORMAT;
+	out->slice = gr_read_u64(&r);
+	return finished(&r);
 }
 
 size_t fdp_nack_encode(const struct fdp_nack *m, uint8_t *bytes, size_t size)
@@ -201,6 +205,10 @@ size_t fdp_announce_encode(const struct fdp_announce *m, uint8_t *bytes, size_t 
 	gr_write_u64(&w, m->present);
 	gr_write_u16(&w, m->count);
 	gr_write_u16(&w, m->flags);
+	gr_write_u64(&w, m->since);
+	gr_write_u16(&w, m->slices);
+	for (unsigned i = 0; i < m->slices; i++)
+		gr_write_u32(&w, m->age[i]);
 	return written(&w);
 }
 
@@ -215,6 +223,12 @@ int fdp_announce_decode(const uint8_t *bytes, size_t len, struct fdp_announce *o
 	out->present = gr_read_u64(&r);
 	out->count = gr_read_u16(&r);
 	out->flags = gr_read_u16(&r);
+	out->since = gr_read_u64(&r);
+	out->slices = gr_read_u16(&r);
+	if (out->slices > FDP_MAX_NODES || (out->slices && !out->since) || out->since > out->frame)
+		return GR_ERR_FORMAT;
+	for (unsigned i = 0; i < FDP_MAX_NODES; i++)
+		out->age[i] = i < out->slices ? gr_read_u32(&r) : FDP_AGE_NONE;
 	if (out->count > FDP_FRAGMENTS_MAX || !out->message != !out->count ||
 	    out->swapped > out->frame || out->live & ~out->present || out->flags & ~FDP_TWICE)
 		return GR_ERR_FORMAT;
@@ -248,6 +262,8 @@ size_t fdp_state_head_encode(const struct fdp_state_head *m, uint8_t *bytes, siz
 	gr_write_u64(&w, m->live);
 	gr_write_u64(&w, m->present);
 	gr_write_u32(&w, m->flags);
+	gr_write_u64(&w, m->shared);
+	gr_write_u64(&w, m->shared_since);
 	return written(&w);
 }
 
@@ -262,6 +278,10 @@ int fdp_state_head_decode(const uint8_t *bytes, size_t len, struct fdp_state_hea
 	out->live = gr_read_u64(&r);
 	out->present = gr_read_u64(&r);
 	out->flags = gr_read_u32(&r);
+	out->shared = gr_read_u64(&r);
+	out->shared_since = gr_read_u64(&r);
+	if (!out->shared != !out->shared_since || out->shared_since > out->frame)
+		return GR_ERR_FORMAT;
 	if (!r.ok || out->flags & ~FDP_TWICE || out->live & ~out->present ||
 	    (out->frame ? out->previous_frame >= out->frame : out->previous_frame))
 		return GR_ERR_FORMAT;

@@ -12,7 +12,7 @@
 #define FDP_NAME_BYTES 32 /* with the final NUL */
 /* Padded: what answers a JOIN is never longer than the JOIN. */
 #define FDP_JOIN_BYTES 256
-#define FDP_BODY_MAX 256
+#define FDP_BODY_MAX (FDP_DATAGRAM_MIN - FDP_HEADER_BYTES) /* of all but states and slices */
 
 struct fdp_join {
 	uint16_t version, index;
@@ -41,6 +41,7 @@ struct fdp_report {
 	uint64_t swapped_frame, swapped_count;
 	int64_t swap_ns; /* node's CLOCK_MONOTONIC at swapped_frame */
 	uint32_t render_us;
+	uint64_t slice; /* frame of the newest slice that the node has made; 0: none in this division */
 };
 
 #define FDP_NACK_SNAPSHOT 1u /* cannot use what came: send the whole state */
@@ -52,6 +53,8 @@ struct fdp_nack {
 };
 
 #define FDP_TWICE 1u /* the way is lossy: READY and NACK are worth sending twice */
+/* How old a slice is that nobody has made yet, or that is older than can be said. */
+#define FDP_AGE_NONE UINT32_MAX
 /* PROBE and SWAP. */
 struct fdp_announce {
 	uint64_t frame, swapped; /* under way (or last), last swapped */
@@ -59,6 +62,32 @@ struct fdp_announce {
 	uint64_t live, present;  /* bit i: node i counts in the barrier; is known */
 	uint16_t count;          /* fragments of that message */
 	uint16_t flags;
+	/* The newest whole slices, by rank; slices 0: not said. Division: as in the state's head. */
+	uint64_t since;
+	uint16_t slices;
+	uint32_t age[FDP_MAX_NODES]; /* frame less the slice's, or FDP_AGE_NONE */
+};
+
+/*
+ * A piece of a slice: all but a slice's last have `chunk` bytes. The division
+ * that it is of: the one that began with frame `since`.
+ */
+struct fdp_piece {
+	uint64_t since, frame;
+	uint16_t index, count; /* slice index of count; 2..FDP_MAX_NODES */
+	uint16_t chunk;
+	uint32_t len;          /* of the slice */
+	uint32_t at;           /* where in it the piece begins */
+};
+#define FDP_PIECE_HEAD 32
+
+#define FDP_LACK_BITS 1024
+struct fdp_lack {
+	uint64_t since, frame; /* which slice */
+	uint16_t index;
+	uint16_t count; /* bits; 0: every piece */
+	uint32_t first; /* piece of bit 0 */
+	uint8_t missing[FDP_LACK_BITS / 8];
 };
 
 /* What precedes the delta in DELTA and SNAPSHOT. */
@@ -67,8 +96,14 @@ struct fdp_state_head {
 	uint64_t hash, previous_hash;
 	uint64_t live, present;
 	uint32_t flags;
+	/*
+	 * Division of the light: slice i is the i-th node's in `shared`, from the
+	 * lowest bit up. Slices of frames before `shared_since` are void. Both 0
+	 * when nothing is shared.
+	 */
+	uint64_t shared, shared_since;
 };
-#define FDP_STATE_HEAD_BYTES 52
+#define FDP_STATE_HEAD_BYTES 68
 
 size_t fdp_join_encode(const struct fdp_join *m, uint8_t *bytes, size_t size);
 int fdp_join_decode(const uint8_t *bytes, size_t len, struct fdp_join *out);
@@ -85,6 +120,11 @@ int fdp_announce_decode(const uint8_t *bytes, size_t len, struct fdp_announce *o
 size_t fdp_leave_encode(uint64_t frame, uint8_t *bytes, size_t size);
 int fdp_leave_decode(const uint8_t *bytes, size_t len, uint64_t *out_frame);
 size_t fdp_state_head_encode(const struct fdp_state_head *m, uint8_t *bytes, size_t size);
+size_t fdp_piece_encode(const struct fdp_piece *m, uint8_t *bytes, size_t size);
+/* The piece's bytes are what follows: bytes + FDP_PIECE_HEAD, len - FDP_PIECE_HEAD of them. */
+int fdp_piece_decode(const uint8_t *bytes, size_t len, struct fdp_piece *out);
+size_t fdp_lack_encode(const struct fdp_lack *m, uint8_t *bytes, size_t size);
+int fdp_lack_decode(const uint8_t *bytes, size_t len, struct fdp_lack *out);
 /* The delta is what follows: bytes + FDP_STATE_HEAD_BYTES. */
 int fdp_state_head_decode(const uint8_t *bytes, size_t len, struct fdp_state_head *out);
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #define NODE_KINDS (1u << FDP_WELCOME | 1u << FDP_REFUSE | 1u << FDP_SNAPSHOT | 1u << FDP_DELTA | \
-		    1u << FDP_PROBE | 1u << FDP_SWAP | 1u << FDP_LEAVE)
+		    1u << FDP_PROBE | 1u << FDP_SWAP | 1u << FDP_LEAVE | 1u << FDP_SLICE | 1u << FDP_LACK)
 /* A REFUSED is told again after this, even if nothing has changed. */
 #define REFUSED_AGAIN_NS INT64_C(60000000000)
 
@@ -91,6 +91,8 @@ int fdp_node_create(struct fdp_node **out, const struct fdp_node_params *params,
 		result = param_state_create(&n->state);
 	if (!result)
 		result = param_state_create(&n->scratch);
+	if (!result)
+		result = fdp_share_init(&n->share, params->share_bytes);
 	if (result) {
 		fdp_node_destroy(&n);
 		return result;
@@ -108,6 +110,7 @@ void fdp_node_destroy(struct fdp_node **node)
 	if (!n)
 		return;
 	fdp_outbox_finish(&n->out);
+	fdp_share_finish(&n->share);
 	param_state_destroy(&n->state);
 	param_state_destroy(&n->scratch);
 	sodium_memzero(n->params.key, sizeof n->params.key);
@@ -214,6 +217,10 @@ static enum fdp_verdict in_session(struct fdp_node *n, const struct fdp_header *
 	case FDP_PROBE:
 	case FDP_SWAP:
 		return fdp_node_on_announce(n, h, body, now_ns);
+	case FDP_SLICE:
+		return fdp_node_on_slice(n, body, h->payload_len, now_ns);
+	case FDP_LACK:
+		return fdp_node_on_lack(n, body, h->payload_len);
 	case FDP_LEAVE:
 		if (fdp_leave_decode(body, h->payload_len, &frame))
 			return FDP_BAD_FORMAT;

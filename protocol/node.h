@@ -46,6 +46,11 @@ struct fdp_node_params {
 	size_t datagram_max;
 	int64_t join_ns;    /* between two requests to join; 0: 200 ms */
 	int64_t silence_ns; /* master counts as lost after this; 0: 2 s */
+	/*
+	 * All nodes' slices of the light together, bytes: at each count of nodes as
+	 * many times the longest slice. 0: nothing is shared. At most FDP_SHARE_MAX.
+	 */
+	size_t share_bytes;
 };
 
 struct fdp_node_ops { /* neither may call back into the node */
@@ -65,6 +70,30 @@ int64_t fdp_node_next(const struct fdp_node *node);
 const struct param_state *fdp_node_params_state(const struct fdp_node *node);
 void fdp_node_ready(struct fdp_node *node, uint64_t frame, uint32_t render_us, int64_t now_ns);
 void fdp_node_swapped(struct fdp_node *node, uint64_t frame, int64_t swap_ns, int64_t now_ns);
+
+/*
+ * The light that nodes share out. In each frame:
+ *   on FDP_NODE_FRAME     fdp_node_division: which slice is ours
+ *   before it is drawn    fdp_node_slices: what the others made of the frames before
+ *   the GPU has finished  fdp_node_slice, if it changed; then fdp_node_ready
+ */
+/* False when the light of the present frame is not shared. *out_count 1: ours is all of it. */
+bool fdp_node_division(const struct fdp_node *node, unsigned *out_index, unsigned *out_count);
+typedef void fdp_node_slice_fn(void *ctx, const uint8_t *bytes, size_t len);
+/*
+ * Gives the newest whole slice of each other node that was made before `frame`
+ * in this division, once, and counts those that are late. fn may not call back into the node.
+ */
+void fdp_node_slices(struct fdp_node *node, uint64_t frame, fdp_node_slice_fn *fn, void *ctx);
+/*
+ * Sends our slice of `frame` to all. GR_OK; GR_NOTHING when nobody is to have it
+ * (alone, overtaken by a newer frame, a session gone by); GR_ERR_RANGE when it
+ * is longer than share_bytes by the number of nodes.
+ */
+int fdp_node_slice(struct fdp_node *node, uint64_t frame, const uint8_t *bytes, size_t len,
+		   int64_t now_ns);
+void fdp_node_share(const struct fdp_node *node, struct fdp_share_counts *out);
+
 void fdp_node_leave(struct fdp_node *node, int64_t now_ns);
 enum fdp_node_state fdp_node_status(const struct fdp_node *node);
 uint64_t fdp_node_hash(const struct fdp_node *node);

@@ -16,6 +16,7 @@ void fdp_node_frame_reset(struct fdp_node *n)
 	n->nacked_ns = 0;
 	fdp_reassembly_reset(&n->delta);
 	fdp_reassembly_reset(&n->snapshot);
+	fdp_node_share_reset(n);
 }
 
 static void send_report(struct fdp_node *n, enum fdp_kind kind, uint64_t frame, uint64_t hash)
@@ -27,6 +28,7 @@ static void send_report(struct fdp_node *n, enum fdp_kind kind, uint64_t frame, 
 		.swapped_count = n->swapped_count,
 		.swap_ns = n->swap_ns,
 		.render_us = n->current.render_us,
+		.slice = n->slice_frame,
 	};
 
 	fdp_outbox_send(&n->out, FDP_TO_ALL, kind,
@@ -116,6 +118,7 @@ static enum fdp_verdict apply(struct fdp_node *n, const struct fdp_state_head *h
 		n->status = FDP_NODE_LIVE;
 		n->joined_sequence = sequence;
 	}
+	fdp_node_share_frame(n, head);
 	send_report(n, FDP_ACK, n->applied, n->hash);
 	if (fdp_node_in(n, head->live))
 		start_frame(n, head->frame);
@@ -255,6 +258,7 @@ enum fdp_verdict fdp_node_on_announce(struct fdp_node *n, const struct fdp_heade
 	if (a.swapped > n->swap_seen)
 		n->swap_seen = a.swapped;
 	swap_if_due(n);
+	fdp_node_note_slices(n, &a, now_ns);
 	if (a.frame > n->applied && fdp_node_in(n, a.live))
 		ask_for_announced(n, &a, now_ns);
 	if (h->kind != FDP_PROBE)
@@ -276,17 +280,19 @@ void fdp_node_frame_tick(struct fdp_node *n, int64_t now_ns)
 	}
 	if (fdp_reassembly_open(&n->delta) && now_ns - n->nacked_ns >= n->retry_ns)
 		nack_missing(n, &n->delta, now_ns);
+	fdp_node_share_tick(n, now_ns);
 }
 
 int64_t fdp_node_frame_next(const struct fdp_node *n)
 {
-	int64_t next = INT64_MAX;
+	int64_t next = INT64_MAX, share_next;
 
 	if (n->current.ready && !n->current.swapped)
 		next = n->current.asked_ns + fdp_backoff(n->retry_ns, n->current.asks);
 	if (fdp_reassembly_open(&n->delta) && n->nacked_ns + n->retry_ns < next)
 		next = n->nacked_ns + n->retry_ns;
-	return next;
+	share_next = fdp_node_share_next(n);
+	return share_next < next ? share_next : next;
 }
 
 void fdp_node_ready(struct fdp_node *n, uint64_t frame, uint32_t render_us, int64_t now_ns)

@@ -1,6 +1,6 @@
 /*
  * Inside the node's half of FDP: node.c has membership, node_frame.c the
- * frame.
+ * frame, node_share.c the light that the nodes share out.
  */
 #ifndef GROTTO_PROTOCOL_NODE_PRIVATE_H
 #define GROTTO_PROTOCOL_NODE_PRIVATE_H
@@ -9,6 +9,7 @@
 #include "protocol/node.h"
 #include "protocol/outbox.h"
 #include "protocol/replay.h"
+#include "protocol/share.h"
 #include "protocol/state.h"
 
 #define FDP_JOIN_DEFAULT_NS INT64_C(200000000)
@@ -59,6 +60,13 @@ struct fdp_node {
 	struct fdp_reassembly delta, snapshot;
 	int64_t nacked_ns;
 	uint8_t plain[FDP_MESSAGE_MAX];
+
+	struct fdp_share share;
+	/* Division of the present frame, as in the state's head; what came may be of a later one. */
+	uint64_t shared, shared_since;
+	uint64_t slice_frame;  /* of the newest slice that we made in it; 0: none */
+	uint64_t slices_frame; /* that the others' were last given for */
+	uint64_t lack_budget;  /* bytes of ours that may be sent again in this frame */
 };
 
 void fdp_node_say(struct fdp_node *n, enum fdp_node_event_kind kind, uint64_t frame);
@@ -75,6 +83,17 @@ enum fdp_verdict fdp_node_on_state(struct fdp_node *n, const struct fdp_header *
 				   const uint8_t *payload, int64_t now_ns);
 enum fdp_verdict fdp_node_on_announce(struct fdp_node *n, const struct fdp_header *h,
 				      const uint8_t *body, int64_t now_ns);
+void fdp_node_share_reset(struct fdp_node *n);
+/* A frame is applied: its division. */
+void fdp_node_share_frame(struct fdp_node *n, const struct fdp_state_head *head);
+enum fdp_verdict fdp_node_on_slice(struct fdp_node *n, const uint8_t *body, size_t len,
+				   int64_t now_ns);
+enum fdp_verdict fdp_node_on_lack(struct fdp_node *n, const uint8_t *body, size_t len);
+/* The master says which slices there are. */
+void fdp_node_note_slices(struct fdp_node *n, const struct fdp_announce *a, int64_t now_ns);
+void fdp_node_share_tick(struct fdp_node *n, int64_t now_ns);
+int64_t fdp_node_share_next(const struct fdp_node *n);
+
 void fdp_node_frame_tick(struct fdp_node *n, int64_t now_ns);
 int64_t fdp_node_frame_next(const struct fdp_node *n);
 

@@ -18,6 +18,7 @@ static const char *const kind_names[FDP_KINDS] = {
 	[FDP_SNAPSHOT] = "snapshot", [FDP_DELTA] = "delta", [FDP_ACK] = "ack",
 	[FDP_NACK] = "nack",   [FDP_PROBE] = "probe",     [FDP_READY] = "ready",
 	[FDP_SWAP] = "swap",   [FDP_SWAPPED] = "swapped", [FDP_LEAVE] = "leave",
+	[FDP_SLICE] = "slice", [FDP_LACK] = "lack",
 };
 
 const char *fdp_kind_name(enum fdp_kind kind)

@@ -14,7 +14,7 @@
 
 #include "protocol/master.h"
 
-#define FDP_VERSION 1
+#define FDP_VERSION 2
 #define FDP_HEADER_BYTES 64
 #define FDP_MAC_AT 48
 #define FDP_MAC_BYTES 16
@@ -49,6 +49,8 @@ enum fdp_kind {
 	FDP_SWAP,
 	FDP_SWAPPED,
 	FDP_LEAVE,
+	FDP_SLICE,    /* both: a piece of a slice of the light */
+	FDP_LACK,     /* both: these pieces of a slice are missing */
 	FDP_KINDS
 };
 

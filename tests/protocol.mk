@@ -9,6 +9,7 @@ PROTOCOL_TESTS = \
 	tests/unit/test_pack \
 	tests/unit/test_params \
 	tests/unit/test_peer \
+	tests/unit/test_share \
 	tests/unit/test_wire
 check_PROGRAMS += $(PROTOCOL_TESTS)
 TESTS += $(PROTOCOL_TESTS)
@@ -33,6 +34,10 @@ tests_unit_test_params_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_peer_SOURCES = tests/unit/test_peer.c tests/unit/unit.h
 tests_unit_test_peer_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_peer_LDADD = $(PROTOCOL_TEST_LDADD)
+tests_unit_test_share_SOURCES = tests/unit/test_share.c \
+	tests/unit/cluster_sim.c tests/unit/cluster_sim.h tests/unit/unit.h
+tests_unit_test_share_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_unit_test_share_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_wire_SOURCES = tests/unit/test_wire.c tests/unit/unit.h
 tests_unit_test_wire_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_wire_LDADD = $(PROTOCOL_TEST_LDADD)
@@ -45,8 +50,11 @@ EXTRA_DIST += \
 	tests/fuzz/fuzz_delta.c tests/fuzz/fuzz_key.c tests/fuzz/fuzz_pair.h \
 	tests/fuzz/corpus/datagram/ack \
 	tests/fuzz/corpus/datagram/announce \
+	tests/fuzz/corpus/datagram/announce-slices \
 	tests/fuzz/corpus/datagram/join \
+	tests/fuzz/corpus/datagram/lack \
 	tests/fuzz/corpus/datagram/nack \
+	tests/fuzz/corpus/datagram/slice \
 	tests/fuzz/corpus/datagram/snapshot \
 	tests/fuzz/corpus/datagram/welcome \
 	tests/fuzz/corpus/delta/empty \

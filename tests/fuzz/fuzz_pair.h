@@ -93,12 +93,34 @@ static void fuzz_deliver(struct fuzz_pair *p)
 	p->count -= count;
 }
 
+static void fuzz_take_slice(void *ctx, const uint8_t *bytes, size_t len)
+{
+	volatile uint8_t sum = 0;
+
+	(void)ctx;
+	if (!len || len > 2048)
+		abort();
+	for (size_t i = 0; i < len; i++)
+		sum = (uint8_t)(sum + bytes[i]);
+}
+
+/* As a daemon does with its part of the light. */
+static void fuzz_light(struct fuzz_pair *p, int i)
+{
+	struct fdp_node *n = p->nodes[i];
+	static const uint8_t slice[900] = { 1, 2, 3 };
+
+	fdp_node_slices(n, n->current.frame, fuzz_take_slice, NULL);
+	fdp_node_slice(n, n->current.frame, slice, sizeof slice, p->now_ns);
+}
+
 static void fuzz_tick(struct fuzz_pair *p, int64_t ns)
 {
 	p->now_ns += ns;
 	fdp_master_tick(p->master, p->now_ns);
 	for (int i = 0; i < 2; i++) {
 		fdp_node_tick(p->nodes[i], p->now_ns);
+		fuzz_light(p, i);
 		fdp_node_ready(p->nodes[i], p->nodes[i]->current.frame, 1, p->now_ns);
 	}
 }
@@ -122,7 +144,7 @@ static void fuzz_pair_start(struct fuzz_pair *p, size_t datagram_max)
 	const struct fdp_master_params master = {
 		.session = FUZZ_SESSION, .key = { 1 }, .node_names = names, .node_count = 2,
 		.datagram_max = datagram_max, .deadline_ns = 33000000, .evict_frames = 3,
-		.multicast = true,
+		.multicast = true, .share_bytes = 4096,
 	};
 
 	p->frame = p->count = 0;
@@ -132,6 +154,7 @@ static void fuzz_pair_start(struct fuzz_pair *p, size_t datagram_max)
 	for (uint16_t i = 0; i < 2; i++) {
 		const struct fdp_node_params node = {
 			.index = i, .name = names[i], .key = { 1 }, .datagram_max = datagram_max,
+			.share_bytes = 4096,
 		};
 		if (fdp_node_create(&p->nodes[i], &node, &node_ops))
 			abort();
@@ -174,7 +197,7 @@ static size_t fuzz_next(struct gr_reader *r, uint8_t *bytes, size_t size, uint16
 	memcpy(bytes, header, FDP_MAC_AT);
 	memcpy(bytes + FDP_HEADER_BYTES, payload, len);
 	if (right & 1) {
-		gr_write_bytes(&w, "GFDP\1", 5);
+		gr_write_bytes(&w, "GFDP\2", 5);
 		gr_write_u8(&w, header[5] % FDP_KINDS);
 		gr_write_u8(&w, header[6] & 1);
 		gr_write_u8(&w, 0);

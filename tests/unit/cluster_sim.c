@@ -151,13 +151,13 @@ static void node_event(void *ctx, const struct fdp_node_event *e)
 	switch (e->kind) {
 	case FDP_NODE_JOINED:
 		n->joined++;
-		n->last_frame = n->last_swap = n->drawing = n->swap = 0;
+		n->last_frame = n->last_swap = n->drawing = n->swap = n->start = 0;
 		break;
 	case FDP_NODE_FRAME:
 		assert_true(e->frame >= n->last_frame); /* equal: the state was put right */
 		check_frame(n, e->frame);
 		n->frames += e->frame > n->last_frame;
-		n->last_frame = n->drawing = e->frame;
+		n->last_frame = n->drawing = n->start = e->frame;
 		n->drawn_at_ns = s->now_ns + (n->render_ns ? n->render_ns
 				 : 2 * SIM_MS + (int64_t)(6 * SIM_MS * uniform(s)));
 		break;
@@ -213,6 +213,7 @@ void sim_start_master(struct sim *s)
 		.deadline_ns = SIM_DEADLINE_NS,
 		.evict_frames = s->evict_frames,
 		.multicast = s->multicast,
+		.share_bytes = s->share_bytes,
 	};
 
 	for (size_t i = 0; i < s->node_count; i++)
@@ -241,18 +242,19 @@ void sim_start_node(struct sim *s, int node)
 		.layout_hash = { 4 },
 		.scene_hash = { 5 },
 		.datagram_max = s->datagram_max,
+		.share_bytes = s->share_bytes,
 	};
 
 	n->sim = s;
 	n->index = node;
-	n->drawing = n->swap = 0;
+	n->drawing = n->swap = n->start = 0;
 	assert_int_equal(fdp_node_create(&n->node, &p, &ops), GR_OK);
 }
 
 void sim_kill_node(struct sim *s, int node)
 {
 	fdp_node_destroy(&s->nodes[node].node);
-	s->nodes[node].drawing = 0;
+	s->nodes[node].drawing = s->nodes[node].start = 0;
 }
 
 void sim_start_all(struct sim *s)
@@ -318,6 +320,11 @@ static int64_t earliest(const struct sim *s)
 /* The node's daemon, after each call into the state machine. */
 static void tend_node(struct sim *s, struct sim_node *n)
 {
+	const uint64_t start = n->start;
+
+	n->start = 0;
+	if (n->node && start && s->begin_light)
+		s->begin_light(n, start);
 	while (n->node && n->swap) {
 		const uint64_t frame = n->swap;
 
@@ -349,6 +356,8 @@ static void step_node(struct sim *s, struct sim_node *n)
 		const uint64_t frame = n->drawing;
 
 		n->drawing = 0;
+		if (s->light_done)
+			s->light_done(n, frame);
 		fdp_node_ready(n->node, frame, 1000, s->now_ns);
 		tend_node(s, n);
 	}

@@ -31,7 +31,8 @@ struct sim_node {
 	int64_t render_ns;     /* 0: drawn from 2..8 ms */
 	uint64_t drawing;      /* frame, 0 none */
 	int64_t drawn_at_ns;
-	uint64_t swap; /* told, not yet reported */
+	uint64_t start; /* frame told, not yet begun to be drawn */
+	uint64_t swap;  /* told, not yet reported */
 	uint64_t frames, swaps, last_frame, last_swap, joined, lost, refused, mismatches, left;
 	char reason[FDP_REASON_MAX];
 };
@@ -67,6 +68,10 @@ struct sim {
 	char reason[FDP_REASON_MAX];
 	int64_t *delivery_ns; /* begin to FDP_NODE_FRAME, all nodes and frames */
 	size_t delivery_count, delivery_room;
+	/* What the daemon does with the light: before it draws, and when that is done. */
+	size_t share_bytes; /* 0: nothing is shared */
+	void (*begin_light)(struct sim_node *n, uint64_t frame);
+	void (*light_done)(struct sim_node *n, uint64_t frame);
 	/* May change a datagram on its way; false drops it. */
 	bool (*tamper)(struct sim *sim, int to, uint8_t *bytes, size_t len);
 	void *tamper_ctx;

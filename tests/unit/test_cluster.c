@@ -723,9 +723,9 @@ static void other_version(void **state)
 {
 	const uint8_t key[FDP_KEY_BYTES] = { 1, 2, 3 };
 	uint8_t bytes[FDP_HEADER_BYTES + FDP_JOIN_BYTES];
-	struct fdp_join join = { .version = 2, .index = 0, .name = "wall0" };
+	struct fdp_join join = { .version = 3, .index = 0, .name = "wall0" };
 	struct fdp_header h = {
-		.version = 2, .kind = FDP_JOIN, .sender = 0, .payload_len = FDP_JOIN_BYTES,
+		.version = 3, .kind = FDP_JOIN, .sender = 0, .payload_len = FDP_JOIN_BYTES,
 		.count = 1, .sequence = 1, .message = 1,
 		.message_len = FDP_JOIN_BYTES, .plain_len = FDP_JOIN_BYTES,
 	};
@@ -738,7 +738,7 @@ static void other_version(void **state)
 	fdp_wire_seal(&h, key, bytes);
 	assert_int_equal(fdp_master_receive(s.master, bytes, sizeof bytes, s.now_ns, NULL), 0);
 	assert_int_equal(s.refused, 1);
-	assert_non_null(strstr(s.reason, "speaks 2, the master 1"));
+	assert_non_null(strstr(s.reason, "speaks 3, the master 2"));
 	/* Anything else of that version is not looked at. */
 	h.kind = FDP_ACK;
 	fdp_wire_seal(&h, key, bytes);

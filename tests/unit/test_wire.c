@@ -57,7 +57,7 @@ static void good(void **state)
 	assert_int_equal(out.count, 1);
 	assert_false(out.packed);
 	/* Every byte where docs/protocol.md says it is. */
-	assert_memory_equal(bytes, "GFDP\1\6\0\0\2\0\12\0\0\0\1\0", 16);
+	assert_memory_equal(bytes, "GFDP\2\6\0\0\2\0\12\0\0\0\1\0", 16);
 	assert_memory_equal(bytes + 16, "\115\0\0\0\0\0\0\0\5\0\0\0\0\0\0\0\6\0\0\0\0\0\0\0\12\0\0\0\12\0\0\0", 32);
 }
 
@@ -122,9 +122,10 @@ static void each_field(void **state)
 		assert_int_equal(sealed(h, key, 10), verdict); } while (0)
 	SAYS(FDP_GOOD, (void)0);
 	assert_int_equal(sealed(ack_header(), other_key, 10), FDP_BAD_AUTH);
-	SAYS(FDP_BAD_VERSION, h.version = 2);
+	SAYS(FDP_BAD_VERSION, h.version = 1);
+	SAYS(FDP_BAD_VERSION, h.version = 3);
 	SAYS(FDP_BAD_VERSION, h.version = 0);
-	SAYS(FDP_GOOD, h.version = 2; h.kind = FDP_JOIN); /* the form of JOIN never changes */
+	SAYS(FDP_GOOD, h.version = 1; h.kind = FDP_JOIN); /* the form of JOIN never changes */
 	SAYS(FDP_BAD_SESSION, h.session = 78);
 	SAYS(FDP_BAD_SESSION, h.session = 0);
 	SAYS(FDP_GOOD, h.session = 0; h.kind = FDP_JOIN);
@@ -239,15 +240,18 @@ static const struct sample samples[] = {
 	{ "welcome", 48, false, { .welcome = { { 1 }, { 2 }, UINT64_C(1) << 40, 33000, 4125 } },
 	  enc_welcome, dec_welcome },
 	{ "refuse", 18 + 11, false, { .refuse = { { 1 }, "another one" } }, enc_refuse, dec_refuse },
-	{ "report", 48, false, { .report = { 9, UINT64_C(0x1122334455667788), 8, 7, -5, 1234 } },
+	{ "report", 56, false, { .report = { 9, UINT64_C(0x1122334455667788), 8, 7, -5, 1234, 9 } },
 	  enc_report, dec_report },
 	{ "nack", 20 + 2, false, { .nack = { 9, 8, 0, 11, { 0xff, 0x07 } } }, enc_nack, dec_nack },
 	{ "nack for a snapshot", 20, false, { .nack = { 9, 8, FDP_NACK_SNAPSHOT, 0, { 0 } } },
 	  enc_nack, dec_nack },
-	{ "announce", 44, false, { .announce = { 9, 8, 7, 0x0f, 0xff, 3, FDP_TWICE } },
+	{ "announce", 54, false, { .announce = { 9, 8, 7, 0x0f, 0xff, 3, FDP_TWICE, 0, 0, { 0 } } },
+	  enc_announce, dec_announce },
+	{ "announce with slices", 54 + 12, false,
+	  { .announce = { 9, 8, 7, 0x07, 0xff, 3, 0, 5, 3, { 0, 4, FDP_AGE_NONE } } },
 	  enc_announce, dec_announce },
 	{ "state head", FDP_STATE_HEAD_BYTES, true,
-	  { .head = { 9, 8, UINT64_C(0xdeadbeefcafebabe), 6, 0x0f, 0xff, FDP_TWICE } },
+	  { .head = { 9, 8, UINT64_C(0xdeadbeefcafebabe), 6, 0x0f, 0xff, FDP_TWICE, 0x0f, 5 } },
 	  enc_state_head, dec_state_head },
 	{ "leave", 8, false, { .leave = 99 }, enc_leave, dec_leave },
 };
