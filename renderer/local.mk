@@ -6,6 +6,7 @@ RENDERER_SOURCES = \
 
 include $(top_srcdir)/renderer/gl/local.mk
 include $(top_srcdir)/renderer/gi/local.mk
+include $(top_srcdir)/renderer/trace/local.mk
 include $(top_srcdir)/renderer/view/local.mk
 
 noinst_LIBRARIES += renderer/libgrenderer.a

@@ -1,4 +1,4 @@
-# renderer/gi, renderer/trace
+# renderer/gi
 RENDERER_SOURCES += \
 	renderer/gi/dispatch.c renderer/gi/dispatch.h \
 	renderer/gi/front.c renderer/gi/front.h \
@@ -14,9 +14,7 @@ RENDERER_SOURCES += \
 	renderer/gi/surfel_patch_data.c renderer/gi/surfel_patches.c renderer/gi/surfel_points.c renderer/gi/surfel_probes.c \
 	renderer/gi/surfel_random.h renderer/gi/surfel_reach.c renderer/gi/surfel_surface.c \
 	renderer/gi/surfel_grid.c renderer/gi/surfel_set.c renderer/gi/surfel_set.h \
-	renderer/gi/transfer.c renderer/gi/transfer.h \
-	renderer/trace/crew.c renderer/trace/crew.h renderer/trace/vector.h \
-	renderer/trace/rays.c renderer/trace/rays.h renderer/trace/reference.h
+	renderer/gi/transfer.c renderer/gi/transfer.h
 
 SHADERS += \
 	renderer/shaders/gi_lpv.glsl renderer/shaders/gi_probe.comp renderer/shaders/gi_lpv_thesis.glsl renderer/shaders/lpv_check.comp \

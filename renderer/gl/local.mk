@@ -19,7 +19,8 @@ RENDERER_SOURCES += \
 	renderer/scene/scene.c renderer/scene/scene.h \
 	renderer/scene/scene_block.c renderer/scene/scene_block.h \
 	renderer/scene/scene_hash.c renderer/scene/scene_import.c \
-	renderer/scene/scene_surface.c renderer/scene/scene_surface.h renderer/scene/texture.c
+	renderer/scene/scene_surface.c renderer/scene/scene_surface.h \
+	renderer/scene/texel.c renderer/scene/texel.h renderer/scene/texture.c
 
 SHADERS += renderer/shaders/material.glsl
 EXTRA_DIST += renderer/shaders/embed.awk renderer/shaders/resolve.awk renderer/shaders/check.sh

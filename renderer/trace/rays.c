@@ -5,12 +5,21 @@
 
 #include <embree3/rtcore.h>
 #include <math.h>
+#include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 struct rays {
 	RTCDevice device;
 	RTCScene scene;
+	uint8_t *one_sided; /* per triangle */
+};
+
+/* What a query's filter is handed: Embree passes on the pointer to its first member. */
+struct query {
+	struct RTCIntersectContext context;
+	const struct rays *rays;
 };
 
 static void on_error(void *user, enum RTCError code, const char *text)
@@ -46,16 +55,41 @@ static int add_mesh(struct rays *rays, const struct scene *scene)
 	return GR_OK;
 }
 
+static int note_sides(struct rays *rays, const struct scene *scene)
+{
+	size_t triangles = scene->index_count / 3;
+
+	rays->one_sided = calloc(triangles ? triangles : 1, 1);
+	if (!rays->one_sided)
+		return GR_ERR_NOMEM;
+	for (size_t d = 0; d < scene->draw_count; d++) {
+		const struct scene_draw *draw = &scene->draws[d];
+
+		if (!scene->materials[draw->material].two_sided)
+			memset(rays->one_sided + draw->first_index / 3, 1, draw->index_count / 3);
+	}
+	return GR_OK;
+}
+
 int rays_create(struct rays **out, const struct scene *scene)
+{
+	/* One thread: nodes share a machine in the demo, and builds are short. */
+	return rays_create_threads(out, scene, 1);
+}
+
+int rays_create_threads(struct rays **out, const struct scene *scene, int threads)
 {
 	struct rays *rays = calloc(1, sizeof *rays);
 	int result = GR_ERR_NOMEM;
+	char settings[64];
 
 	*out = NULL;
 	if (!rays)
 		return result;
-	/* One thread: nodes share a machine in the demo, and builds are short. */
-	rays->device = rtcNewDevice("threads=1,set_affinity=0");
+	if (note_sides(rays, scene) != GR_OK)
+		goto fail;
+	snprintf(settings, sizeof settings, "threads=%d,set_affinity=0", threads);
+	rays->device = rtcNewDevice(settings);
 	if (!rays->device) {
 		gr_error("embree: no device (error %d)", (int)rtcGetDeviceError(NULL));
 		result = GR_ERR_UNSUPPORTED;
@@ -66,7 +100,8 @@ int rays_create(struct rays **out, const struct scene *scene)
 	if (!rays->scene)
 		goto fail;
 	/* Watertight: a ray may not slip between two triangles that share an edge. */
-	rtcSetSceneFlags(rays->scene, RTC_SCENE_FLAG_ROBUST);
+	rtcSetSceneFlags(rays->scene,
+			 RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
 	if (scene->index_count >= 3) {
 		result = add_mesh(rays, scene);
 		if (result != GR_OK)
@@ -92,57 +127,101 @@ void rays_destroy(struct rays **rays)
 		rtcReleaseScene((*rays)->scene);
 	if ((*rays)->device)
 		rtcReleaseDevice((*rays)->device);
+	free((*rays)->one_sided);
 	free(*rays);
 	*rays = NULL;
 }
 
-bool rays_nearest(const struct rays *rays, const float origin[3], const float direction[3],
-		  float max_distance, struct ray_hit *out)
+static void start(struct RTCRay *ray, const float origin[3], const float direction[3],
+		  float max_distance)
 {
-	struct RTCIntersectContext context;
-	struct RTCRayHit q = { 0 };
-	float length;
+	*ray = (struct RTCRay){
+		.org_x = origin[0],
+		.org_y = origin[1],
+		.org_z = origin[2],
+		.dir_x = direction[0],
+		.dir_y = direction[1],
+		.dir_z = direction[2],
+		.tfar = max_distance,
+		.mask = ~0u,
+	};
+}
 
-	q.ray.org_x = origin[0];
-	q.ray.org_y = origin[1];
-	q.ray.org_z = origin[2];
-	q.ray.dir_x = direction[0];
-	q.ray.dir_y = direction[1];
-	q.ray.dir_z = direction[2];
-	q.ray.tfar = max_distance;
-	q.ray.mask = ~0u;
+static bool nearest(const struct rays *rays, struct RTCIntersectContext *context,
+		    const float origin[3], const float direction[3], float max_distance,
+		    struct ray_hit *out)
+{
+	struct RTCRayHit q;
+	float scale, length, n[3];
+
+	start(&q.ray, origin, direction, max_distance);
 	q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-	rtcInitIntersectContext(&context);
-	rtcIntersect1(rays->scene, &context, &q);
+	q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+	rtcIntersect1(rays->scene, context, &q);
 	if (q.hit.geomID == RTC_INVALID_GEOMETRY_ID)
 		return false;
 	out->distance = q.ray.tfar;
 	out->triangle = q.hit.primID;
 	out->u = q.hit.u;
 	out->v = q.hit.v;
-	length = sqrtf(q.hit.Ng_x * q.hit.Ng_x + q.hit.Ng_y * q.hit.Ng_y +
-		       q.hit.Ng_z * q.hit.Ng_z);
-	/* Embree 3: Ng = (v1-v0) x (v2-v0), which is the front of a counter-clockwise triangle. */
-	out->normal[0] = q.hit.Ng_x / length;
-	out->normal[1] = q.hit.Ng_y / length;
-	out->normal[2] = q.hit.Ng_z / length;
+	/* Embree 3: Ng = (v1-v0) x (v2-v0), which is the front of a counter-clockwise triangle.
+	 * Scaled first: the square of a small triangle's normal is below what a float holds. */
+	scale = 1.0f / fmaxf(fabsf(q.hit.Ng_x), fmaxf(fabsf(q.hit.Ng_y), fabsf(q.hit.Ng_z)));
+	n[0] = q.hit.Ng_x * scale;
+	n[1] = q.hit.Ng_y * scale;
+	n[2] = q.hit.Ng_z * scale;
+	length = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+	for (int i = 0; i < 3; i++)
+		out->normal[i] = n[i] / length;
 	return true;
+}
+
+bool rays_nearest(const struct rays *rays, const float origin[3], const float direction[3],
+		  float max_distance, struct ray_hit *out)
+{
+	struct RTCIntersectContext context;
+
+	rtcInitIntersectContext(&context);
+	return nearest(rays, &context, origin, direction, max_distance, out);
+}
+
+/* Takes back a hit on the back of a one-sided triangle. */
+static void only_drawn(const struct RTCFilterFunctionNArguments *arguments)
+{
+	const struct query *query = (const struct query *)arguments->context;
+	const struct RTCRay *ray = (const struct RTCRay *)arguments->ray;
+	const struct RTCHit *hit = (const struct RTCHit *)arguments->hit;
+	float along = hit->Ng_x * ray->dir_x + hit->Ng_y * ray->dir_y + hit->Ng_z * ray->dir_z;
+
+	if (along > 0.0f && query->rays->one_sided[hit->primID])
+		arguments->valid[0] = 0;
+}
+
+bool rays_nearest_drawn(const struct rays *rays, const float origin[3], const float direction[3],
+			float max_distance, struct ray_hit *out)
+{
+	struct query query = { .rays = rays };
+
+	rtcInitIntersectContext(&query.context);
+	query.context.filter = only_drawn;
+	return nearest(rays, &query.context, origin, direction, max_distance, out);
+}
+
+bool rays_blocked_along(const struct rays *rays, const float origin[3], const float direction[3],
+			float max_distance)
+{
+	struct RTCIntersectContext context;
+	struct RTCRay ray;
+
+	start(&ray, origin, direction, max_distance);
+	rtcInitIntersectContext(&context);
+	rtcOccluded1(rays->scene, &context, &ray);
+	return ray.tfar < 0.0f;
 }
 
 bool rays_blocked(const struct rays *rays, const float a[3], const float b[3])
 {
-	struct RTCIntersectContext context;
-	struct RTCRay ray = { 0 };
+	const float whole[3] = { b[0] - a[0], b[1] - a[1], b[2] - a[2] };
 
-	ray.org_x = a[0];
-	ray.org_y = a[1];
-	ray.org_z = a[2];
-	ray.dir_x = b[0] - a[0];
-	ray.dir_y = b[1] - a[1];
-	ray.dir_z = b[2] - a[2];
-	ray.tfar = 1.0f;
-	ray.mask = ~0u;
-	rtcInitIntersectContext(&context);
-	rtcOccluded1(rays->scene, &context, &ray);
-	return ray.tfar < 0.0f;
+	return rays_blocked_along(rays, a, whole, 1.0f);
 }

@@ -1,7 +1,7 @@
 /*
  * CPU rays through a scene (Embree). Used for what is computed once: link
- * transmittance of the lattice, later baking and the reference. Two-sided:
- * every triangle stops a ray.
+ * transmittance of the lattice, baking and the reference. Two-sided: every
+ * triangle stops a ray, unless a query says otherwise.
  *
  * Thread safety: queries may run on several threads at once.
  */
@@ -15,6 +15,8 @@
 struct rays;
 /* Builds the acceleration structure; the scene may go after. */
 int rays_create(struct rays **out, const struct scene *scene);
+/* The same, built by several threads; 0: one a core. The structure is the same for any number. */
+int rays_create_threads(struct rays **out, const struct scene *scene, int threads);
 void rays_destroy(struct rays **rays);
 
 struct ray_hit {
@@ -25,6 +27,12 @@ struct ray_hit {
 };
 bool rays_nearest(const struct rays *rays, const float origin[3], const float direction[3],
 		  float max_distance, struct ray_hit *out);
+/* As the renderer draws: what shows its back and is one-sided is not there. */
+bool rays_nearest_drawn(const struct rays *rays, const float origin[3], const float direction[3],
+			float max_distance, struct ray_hit *out);
+/* Anything from origin to max_distance along a unit direction. */
+bool rays_blocked_along(const struct rays *rays, const float origin[3], const float direction[3],
+			float max_distance);
 /* Anything strictly between the points a and b. */
 bool rays_blocked(const struct rays *rays, const float a[3], const float b[3]);
 
