@@ -1,0 +1,409 @@
+/* Bake files: what is written comes back; whatever was changed is refused, with a reason. */
+#include "base/result.h"
+#include "renderer/gi/surfel_file.h"
+#include "renderer/gi/surfel_store.h"
+#include "tools/bench/room.h"
+#include "tests/unit/unit.h"
+
+#include <fcntl.h>
+#include <math.h>
+#include <sodium.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static struct scene *scene;
+static struct surfel_set *set;
+static uint8_t key[SURFEL_KEY_BYTES];
+static uint8_t *whole;
+static size_t whole_len;
+static char folder[64];
+
+static const struct surfel_bake_params coarse = {
+	.spacing_m = 1, .links = 16, .taps = 2, .probes = 2, .threads = 1, .seed = 1,
+};
+
+static char *in_folder(const char *name)
+{
+	static char path[256];
+
+	snprintf(path, sizeof path, "%s/%s", folder, name);
+	return path;
+}
+
+static uint8_t *read_file(const char *path, size_t *len)
+{
+	FILE *file = fopen(path, "rb");
+	uint8_t *bytes;
+
+	assert_non_null(file);
+	fseek(file, 0, SEEK_END);
+	*len = (size_t)ftell(file);
+	rewind(file);
+	bytes = malloc(*len);
+	assert_int_equal(fread(bytes, 1, *len, file), *len);
+	fclose(file);
+	return bytes;
+}
+
+static int set_up(void **state)
+{
+	struct gr_diag diag = { 0 };
+
+	(void)state;
+	if (sodium_init() < 0)
+		return -1;
+	scene = room_cornell();
+	snprintf(folder, sizeof folder, "/tmp/grotto-surfels-XXXXXX");
+	if (!mkdtemp(folder))
+		return -1;
+	surfel_file_key(scene, &coarse, key);
+	if (surfel_bake(&set, scene, NULL, &coarse, &diag) != GR_OK ||
+	    surfel_file_write(set, key, in_folder("a.surfels")) != GR_OK)
+		return -1;
+	whole = read_file(in_folder("a.surfels"), &whole_len);
+	return 0;
+}
+
+static int tear_down(void **state)
+{
+	(void)state;
+	unlink(in_folder("a.surfels"));
+	rmdir(folder);
+	free(whole);
+	surfel_set_destroy(&set);
+	room_free(&scene);
+	return 0;
+}
+
+/* What decode says to a copy of so many bytes; the reason must hold `reason`. */
+static int decode(const uint8_t *bytes, size_t len, const char *reason)
+{
+	uint8_t *copy = unit_copy(bytes, len);
+	struct gr_diag diag = { 0 };
+	struct surfel_set *found;
+	int result = surfel_file_decode(&found, key, copy, len, "copy", &diag);
+
+	if (result == GR_OK) {
+		assert_non_null(found);
+		surfel_set_destroy(&found);
+	} else {
+		assert_null(found);
+		assert_int_equal(diag.count, 1);
+		if (reason && !strstr(diag.items[0].text, reason))
+			fail_msg("'%s' does not say '%s'", diag.items[0].text, reason);
+	}
+	gr_diag_finish(&diag);
+	free(copy);
+	return result;
+}
+
+static void comes_back(void **state)
+{
+	struct gr_diag diag = { 0 };
+	struct surfel_set *found;
+
+	(void)state;
+	assert_int_equal(surfel_file_read(&found, key, in_folder("a.surfels"), &diag), GR_OK);
+	assert_int_equal(surfel_set_hash(found), surfel_set_hash(set));
+	assert_int_equal(found->rays, set->rays);
+	assert_true(fabs(found->seconds - set->seconds) < 1e-5);
+	surfel_set_destroy(&found);
+	assert_int_equal(surfel_file_read(&found, key, in_folder("none.surfels"), &diag), GR_NOTHING);
+	assert_int_equal(diag.count, 0);
+	printf("# %zu surfels in %zu bytes\n", set->count, whole_len);
+}
+
+static void cut_short(void **state)
+{
+	(void)state;
+	for (size_t len = 0; len < whole_len; len += len < 600 || len + 600 > whole_len ? 1 : 997)
+		assert_int_equal(decode(whole, len, len < 8 ? "not a file" : "cut short"), GR_ERR_FORMAT);
+	uint8_t *longer = calloc(1, whole_len + 1);
+	memcpy(longer, whole, whole_len);
+	assert_int_equal(decode(longer, whole_len + 1, "longer"), GR_ERR_FORMAT);
+	free(longer);
+}
+
+/* A flipped bit anywhere: all of the head, a sweep through the rest, all of the end. */
+static void flipped_bit(void **state)
+{
+	struct unit_random random = unit_random_start("flipped_bit");
+	size_t flips = 0;
+
+	(void)state;
+	for (size_t at = 0; at < whole_len; at += at < 300 || at + 40 > whole_len ? 1 : 211) {
+		uint8_t bit = (uint8_t)(1u << (unit_random_u32(&random) % 8));
+
+		whole[at] ^= bit;
+		assert_true(decode(whole, whole_len, NULL) < 0);
+		whole[at] ^= bit;
+		flips++;
+	}
+	printf("# %zu flipped bits, all refused\n", flips);
+	assert_int_equal(decode(whole, whole_len, NULL), GR_OK);
+}
+
+static void other_version_or_scene(void **state)
+{
+	uint8_t other[SURFEL_KEY_BYTES];
+	struct surfel_bake_params params = coarse;
+
+	(void)state;
+	whole[12]++;
+	assert_int_equal(decode(whole, whole_len, "another version"), GR_ERR_VERSION);
+	whole[12]--;
+	whole[16]++;
+	assert_int_equal(decode(whole, whole_len, "another scene"), GR_ERR_MISMATCH);
+	whole[16]--;
+	params.links++;
+	surfel_file_key(scene, &params, other);
+	assert_memory_not_equal(other, key, sizeof key);
+	scene->hash[3]++;
+	surfel_file_key(scene, &coarse, other);
+	scene->hash[3]--;
+	assert_memory_not_equal(other, key, sizeof key);
+	params = coarse;
+	params.threads = 7; /* changes nothing */
+	surfel_file_key(scene, &params, other);
+	assert_memory_equal(other, key, sizeof key);
+}
+
+/* Someone who knows the form: a right checksum over wrong contents. */
+static void sign(uint8_t *bytes, size_t len)
+{
+	crypto_generichash(bytes + len - 32, 32, bytes, len - 32, NULL, 0);
+}
+
+static void hostile(void **state)
+{
+	static const uint32_t words[] = { 0, 1, 0x7fffffff, 0x80000000, 0xffffffff, 0xfffffffe,
+					  0x7f800000, 0x7fc00000, 1 << 20 };
+	struct unit_random random = unit_random_start("hostile");
+	uint8_t *bytes = unit_copy(whole, whole_len);
+	struct surfel_part parts[SURFEL_PARTS];
+	size_t links_at = 256, accepted = 0, tried = 0;
+
+	(void)state;
+	/* every number of the head, with every value that breaks sums */
+	for (size_t at = 56; at < 200; at += 4)
+		for (size_t k = 0; k < sizeof words / sizeof *words; k++) {
+			memcpy(bytes + at, &words[k], 4);
+			sign(bytes, whole_len);
+			accepted += decode(bytes, whole_len, NULL) == GR_OK;
+			tried++;
+			memcpy(bytes + at, whole + at, 4);
+		}
+	/* a link to nowhere */
+	surfel_set_parts(set, parts);
+	for (int i = 0; i < 5; i++)
+		links_at += parts[i].bytes;
+	const uint32_t nowhere = (uint32_t)set->count;
+	memcpy(bytes + links_at, &nowhere, 4);
+	sign(bytes, whole_len);
+	assert_int_equal(decode(bytes, whole_len, "not there"), GR_ERR_FORMAT);
+	memcpy(bytes + links_at, whole + links_at, 4);
+	/* anything anywhere: whatever is taken must hold */
+	for (int i = 0; i < 3000; i++) {
+		size_t at = 256 + unit_random_u32(&random) % (whole_len - 256 - 36);
+		uint32_t word = words[unit_random_u32(&random) % (sizeof words / sizeof *words)];
+
+		memcpy(bytes + at, &word, 4);
+		sign(bytes, whole_len);
+		accepted += decode(bytes, whole_len, NULL) == GR_OK;
+		tried++;
+		memcpy(bytes + at, whole + at, 4);
+	}
+	printf("# %zu signed but wrong files: %zu could do no harm, the rest was refused\n", tried,
+	       accepted);
+	free(bytes);
+}
+
+/* --- the store --- */
+
+static struct scene_file named(const char *path)
+{
+	return (struct scene_file){ .path = (char *)(uintptr_t)path };
+}
+
+static void bakes_once(void **state)
+{
+	char scene_path[128], kept[128];
+	struct scene_file file;
+	struct surfel_store store;
+	struct surfel_store_done done;
+	struct gr_diag diag = { 0 };
+	struct surfel_set *found;
+
+	(void)state;
+	snprintf(scene_path, sizeof scene_path, "%s/my.scene", folder);
+	snprintf(kept, sizeof kept, "%s/my.surfels", folder);
+	file = named(scene_path);
+	assert_int_equal(surfel_store_init(&store, &file), GR_OK);
+	assert_string_equal(store.beside, kept);
+	for (int round = 0; round < 4; round++) {
+		bool damaged = round == 2;
+
+		if (damaged) {
+			int fd = open(kept, O_WRONLY);
+
+			assert_int_equal(pwrite(fd, "x", 1, 1000), 1);
+			close(fd);
+		}
+		assert_int_equal(surfel_store_get(&store, &found, scene, NULL, &coarse, &diag, &done),
+				 GR_OK);
+		assert_int_equal(done.baked, round == 0 || damaged);
+		assert_string_equal(done.path, kept);
+		assert_int_equal(diag.count, round >= 2);
+		assert_int_equal(surfel_set_hash(found), surfel_set_hash(set));
+		surfel_set_destroy(&found);
+	}
+	gr_diag_finish(&diag);
+	/* nothing else is left lying about */
+	assert_int_equal(unlink(kept), 0);
+	snprintf(kept, sizeof kept, "%s/my.surfels.lock", folder);
+	assert_int_not_equal(access(kept, F_OK), 0);
+	surfel_store_finish(&store);
+}
+
+static void goes_to_the_cache(void **state)
+{
+	char scene_path[128], cache[160];
+	struct scene_file file;
+	struct surfel_store store;
+	struct surfel_store_done done;
+	struct gr_diag diag = { 0 };
+	struct surfel_set *found;
+
+	(void)state;
+	/* a folder that is none cannot be written, by root neither */
+	snprintf(scene_path, sizeof scene_path, "%s/a.surfels/my.scene", folder);
+	snprintf(cache, sizeof cache, "%s/cache/grotto", folder);
+	setenv("CACHE_DIRECTORY", cache, 1);
+	file = named(scene_path);
+	assert_int_equal(surfel_store_init(&store, &file), GR_OK);
+	assert_int_equal(strncmp(store.cache, cache, strlen(cache)), 0);
+	for (int round = 0; round < 2; round++) {
+		assert_int_equal(surfel_store_get(&store, &found, scene, NULL, &coarse, &diag, &done),
+				 GR_OK);
+		assert_int_equal(done.baked, round == 0);
+		assert_string_equal(done.path, store.cache);
+		surfel_set_destroy(&found);
+	}
+	unlink(store.cache);
+	rmdir(cache);
+	*strrchr(cache, '/') = 0;
+	rmdir(cache);
+	/* and without one: still a set, and a warning */
+	unsetenv("CACHE_DIRECTORY");
+	free(store.cache);
+	store.cache = NULL;
+	gr_diag_finish(&diag);
+	diag = (struct gr_diag){ 0 };
+	assert_int_equal(surfel_store_get(&store, &found, scene, NULL, &coarse, &diag, &done), GR_OK);
+	assert_null(done.path);
+	assert_true(diag.warnings > 0);
+	surfel_set_destroy(&found);
+	gr_diag_finish(&diag);
+	surfel_store_finish(&store);
+}
+
+/* Four processes at once: one bakes, three wait and read. */
+static void four_at_once(void **state)
+{
+	struct surfel_bake_params params = coarse;
+	char path[128];
+	int baked = 0, waited = 0;
+	pid_t children[4];
+
+	(void)state;
+	params.links = 1024;
+	params.spacing_m = 0.3f;
+	snprintf(path, sizeof path, "%s/four.surfels", folder);
+	for (int i = 0; i < 4; i++) {
+		children[i] = fork();
+		if (children[i] == 0) {
+			struct surfel_store store;
+			struct surfel_store_done done;
+			struct surfel_set *found;
+			struct gr_diag diag = { 0 };
+
+			if (surfel_store_at(&store, path) != GR_OK ||
+			    surfel_store_get(&store, &found, scene, NULL, &params, &diag, &done) !=
+				    GR_OK)
+				_exit(99);
+			_exit((done.baked ? 1 : 0) + (done.waited_s > 0.02 ? 2 : 0));
+		}
+	}
+	for (int i = 0; i < 4; i++) {
+		int status;
+
+		assert_int_equal(waitpid(children[i], &status, 0), children[i]);
+		assert_true(WIFEXITED(status) && WEXITSTATUS(status) < 4);
+		baked += WEXITSTATUS(status) & 1;
+		waited += WEXITSTATUS(status) >> 1;
+	}
+	printf("# 4 processes at once: %d baked, %d waited\n", baked, waited);
+	assert_int_equal(baked, 1);
+	unlink(path);
+}
+
+/* One that never ends is not waited for without end. */
+static void wait_is_bounded(void **state)
+{
+	struct surfel_store_done done;
+	struct gr_diag diag = { 0 };
+	struct surfel_store store;
+	struct surfel_set *found;
+	char path[128];
+	int pipe_fd[2];
+	pid_t child;
+	char byte;
+
+	(void)state;
+	snprintf(path, sizeof path, "%s/stuck.surfels", folder);
+	assert_int_equal(pipe(pipe_fd), 0);
+	child = fork();
+	if (child == 0) {
+		char lock[160];
+		int fd;
+
+		snprintf(lock, sizeof lock, "%s.lock", path);
+		fd = open(lock, O_RDWR | O_CREAT, 0644);
+		if (fd < 0 || flock(fd, LOCK_EX) != 0 || write(pipe_fd[1], "r", 1) != 1)
+			_exit(1);
+		pause();
+		_exit(0);
+	}
+	assert_int_equal(read(pipe_fd[0], &byte, 1), 1);
+	assert_int_equal(surfel_store_at(&store, path), GR_OK);
+	store.wait_s = 1;
+	assert_int_equal(surfel_store_get(&store, &found, scene, NULL, &coarse, &diag, &done), GR_OK);
+	assert_true(done.baked && !done.path && done.waited_s >= 1 && done.waited_s < 5);
+	surfel_set_destroy(&found);
+	surfel_store_finish(&store);
+	gr_diag_finish(&diag);
+	kill(child, SIGKILL);
+	waitpid(child, NULL, 0);
+	close(pipe_fd[0]);
+	close(pipe_fd[1]);
+	unlink(in_folder("stuck.surfels.lock"));
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(comes_back),
+		cmocka_unit_test(cut_short),
+		cmocka_unit_test(flipped_bit),
+		cmocka_unit_test(other_version_or_scene),
+		cmocka_unit_test(hostile),
+		cmocka_unit_test(bakes_once),
+		cmocka_unit_test(goes_to_the_cache),
+		cmocka_unit_test(four_at_once),
+		cmocka_unit_test(wait_is_bounded),
+	};
+
+	return cmocka_run_group_tests(tests, set_up, tear_down);
+}
