@@ -52,6 +52,12 @@ tests_unit_test_brdf_SOURCES = tests/unit/test_brdf.c tests/unit/unit.h tests/un
 tests_unit_test_brdf_CFLAGS = $(GL_TEST_CFLAGS)
 tests_unit_test_brdf_LDADD = $(GL_TEST_LIBS)
 
+check_PROGRAMS += tests/unit/test_compare
+TESTS += tests/unit/test_compare
+tests_unit_test_compare_SOURCES = tests/unit/test_compare.c tests/unit/unit.h tests/unit/shared.h
+tests_unit_test_compare_CFLAGS = $(GL_TEST_CFLAGS)
+tests_unit_test_compare_LDADD = $(GL_TEST_LIBS)
+
 check_PROGRAMS += tests/unit/test_surfaces
 TESTS += tests/unit/test_surfaces
 tests_unit_test_surfaces_SOURCES = tests/unit/test_surfaces.c tests/unit/unit.h tests/unit/glb.h

@@ -5,6 +5,8 @@ RENDERER_SOURCES += \
 	renderer/gl/target.c renderer/gl/target.h renderer/gl/target_egl.c \
 	renderer/gl/target_glfw.c renderer/gl/target_private.h \
 	renderer/gl/timer.c renderer/gl/timer.h \
+	renderer/image/compare.c renderer/image/compare.h renderer/image/compare_flip.c \
+	renderer/image/compare_ssim.c renderer/image/convolve.c renderer/image/convolve.h \
 	renderer/image/exr_private.h renderer/image/exr_read.c renderer/image/exr_write.c \
 	renderer/image/image.c renderer/image/image.h renderer/image/png.c \
 	renderer/image/read_file.c renderer/image/read_file.h \
