@@ -36,6 +36,7 @@ daemon_grotto_node_SOURCES = \
 	daemon/node.c daemon/node.h \
 	daemon/node_main.c \
 	daemon/node_report.c \
+	daemon/node_share.c daemon/node_share.h \
 	daemon/pictures.c daemon/pictures.h \
 	daemon/room_files.c daemon/room_files.h
 daemon_grotto_node_CFLAGS = $(DAEMON_CFLAGS)

@@ -363,6 +363,7 @@ static int create_protocol(struct master *m)
 		.deadline_ns = layout->rates.barrier_deadline_ns,
 		.evict_frames = (unsigned)layout->rates.evict_frames,
 		.multicast = layout->network.cast != LAYOUT_UNICAST,
+		.share_bytes = m->params.scene->gi.share == SCENE_SHARE_CLUSTER ? FDP_SHARE_MAX : 0,
 	};
 	struct fdp_master_ops ops = { send_datagram, on_event, m };
 	int r;

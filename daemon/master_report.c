@@ -37,6 +37,9 @@ static void write_node(struct json *json, const struct master *m, size_t i, int6
 	json_u64(json, "swapped_frame", peer.swapped_frame);
 	json_f64(json, "ready_after_ms", (double)peer.ready_after_ns * 1e-6);
 	json_f64(json, "render_ms", (double)peer.render_us * 1e-3);
+	json_u64(json, "slices", peer.slices);
+	json_u64(json, "slices_late", peer.slices_late);
+	json_u64(json, "slice_bytes", peer.slice_bytes);
 	if (peer.last_heard_ns > 0)
 		json_f64(json, "heard_ms_ago", (double)(now_ns - peer.last_heard_ns) * 1e-6);
 	json_close(json, '}');
@@ -66,6 +69,24 @@ static void write_wire(struct json *json, const struct master *m)
 	json_u64(json, "replay", c.bad_replay);
 	json_u64(json, "oversized", net.oversized);
 	json_close(json, '}');
+	json_close(json, '}');
+}
+
+static void write_share(struct json *json, const struct master *m)
+{
+	struct fdp_share_counts c;
+	unsigned nodes = fdp_master_share(m->fdp, &c);
+
+	json_open(json, "share", '{');
+	json_bool(json, "on", m->params.scene->gi.share == SCENE_SHARE_CLUSTER);
+	json_u64(json, "nodes", nodes);
+	json_u64(json, "slices", c.received);
+	json_u64(json, "bytes_in", c.bytes_received);
+	json_u64(json, "bytes_out", c.bytes_sent);
+	json_u64(json, "late", c.late);
+	json_u64(json, "lost", c.lost);
+	json_u64(json, "asked", c.asked);
+	json_u64(json, "repairs", c.repairs);
 	json_close(json, '}');
 }
 
@@ -142,6 +163,7 @@ int master_write_json(const struct master *m, int64_t now_ns, char *text, size_t
 	for (size_t i = 0; i < m->params.layout->node_count; i++)
 		write_node(&json, m, i, now_ns);
 	json_close(&json, ']');
+	write_share(&json, m);
 	write_wire(&json, m);
 	write_tracking(&json, m);
 	write_settings(&json, m);

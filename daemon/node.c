@@ -227,6 +227,7 @@ static void start_drawing(struct node *n)
 	n->drawing = n->wanted;
 	n->drawing_ns = n->wanted_ns;
 	n->wanted = n->ready = n->drawn = 0;
+	node_share_begin(&n->share, n->fdp, n->drawing, n->drawing_ns);
 	r = renderer_draw(n->renderer, &n->frame);
 	if (r < 0) {
 		gr_error("frame %" PRIu64 " cannot be drawn: %s", n->drawing, gr_result_name(r));
@@ -258,6 +259,7 @@ static void finish_drawing(struct node *n)
 		return;
 	}
 	n->ready = frame;
+	node_share_end(&n->share, n->fdp, frame, now_ns);
 	fdp_node_ready(n->fdp, frame, (uint32_t)((now_ns - n->drawing_ns) / GR_NS_PER_US), now_ns);
 	serve_protocol(n);
 }
@@ -300,6 +302,7 @@ static int create_protocol(struct node *n)
 		.name = layout->nodes[n->params.index].name,
 		.datagram_max = net_datagram_max(&layout->network),
 		.silence_ns = SILENCE_NS,
+		.share_bytes = n->share.room,
 	};
 	struct fdp_node_ops ops = { send_datagram, on_event, n };
 	int r;
@@ -348,7 +351,9 @@ int node_create(struct node **out, struct loop *loop, struct net *net, struct ta
 	n->pictures = pictures;
 	render_frame_init(&n->next_frame, params->scene_file);
 	notify_init(&n->notify);
-	r = create_protocol(n);
+	r = node_share_init(&n->share, renderer, params->scene_file, params->layout->node_count);
+	if (r >= 0)
+		r = create_protocol(n);
 	if (r >= 0)
 		r = join_loop(n);
 	if (r < 0) {
@@ -387,6 +392,7 @@ void node_destroy(struct node **node)
 	for (int i = 0; i < count; i++)
 		loop_remove(n->loop, fds[i]);
 	fdp_node_destroy(&n->fdp);
+	node_share_finish(&n->share);
 	sodium_memzero(n->params.key, sizeof n->params.key);
 	free(n);
 	*node = NULL;

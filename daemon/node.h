@@ -4,8 +4,8 @@
  *
  * One thread does all: it owns the GL context, and serves the socket between
  * short waits for the GPU. The states of a picture: wanted (its state is
- * applied) -> drawing (submitted) -> ready (the GPU has finished, READY is
- * sent) -> swapped. A newer frame replaces a wanted one; a frame that is
+ * applied) -> drawing (submitted) -> ready (the GPU has finished, our slice of
+ * a shared light and READY are sent) -> swapped. A newer frame replaces a wanted one; a frame that is
  * being drawn is finished first, and is not reported when a newer one waits.
  *
  * Without a master the last picture stays and the node asks to join, for ever.
@@ -17,6 +17,7 @@
 #include "base/log.h"
 #include "daemon/dropped.h"
 #include "daemon/loop.h"
+#include "daemon/node_share.h"
 #include "daemon/notify.h"
 #include "daemon/pictures.h"
 #include "daemon/socket.h"
@@ -50,6 +51,7 @@ struct node {
 	struct renderer *renderer;
 	struct pictures *pictures; /* NULL: none are saved */
 	struct fdp_node *fdp;
+	struct node_share share;
 	struct notify notify;
 	struct render_frame next_frame, frame; /* what is wanted; what is or was drawn */
 	struct node_counts counts;

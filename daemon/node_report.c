@@ -3,6 +3,8 @@
 #include "base/result.h"
 #include "daemon/json.h"
 
+#include <stdlib.h>
+
 static void write_wire(struct json *json, const struct node *n)
 {
 	struct fdp_counters c;
@@ -29,6 +31,43 @@ static void write_wire(struct json *json, const struct node *n)
 	json_close(json, '}');
 }
 
+static void write_share(struct json *json, const struct node *n)
+{
+	struct fdp_share_counts c;
+
+	fdp_node_share(n->fdp, &c);
+	json_open(json, "share", '{');
+	json_bool(json, "on", n->share.room > 0);
+	json_u64(json, "nodes", n->share.count);
+	json_u64(json, "sent", c.sent);
+	json_u64(json, "bytes_sent", c.bytes_sent);
+	json_u64(json, "received", c.received);
+	json_u64(json, "bytes_received", c.bytes_received);
+	json_u64(json, "late", c.late);
+	json_u64(json, "lost", c.lost);
+	json_u64(json, "refused", n->share.refused);
+	json_u64(json, "asked", c.asked);
+	json_u64(json, "repairs", c.repairs);
+	json_close(json, '}');
+}
+
+static int compare_ms(const void *a, const void *b)
+{
+	const double x = *(const double *)a, y = *(const double *)b;
+
+	return (x > y) - (x < y);
+}
+
+/* Of the last frames in which the stage ran: no restart of the light weighs on it. */
+static double median_ms(const struct timers *timers, int stage)
+{
+	double ms[TIMER_WINDOW];
+	size_t n = timers_window(timers, stage, ms);
+
+	qsort(ms, n, sizeof *ms, compare_ms);
+	return n ? (ms[(n - 1) / 2] + ms[n / 2]) / 2 : 0;
+}
+
 static void write_stages(struct json *json, const struct node *n)
 {
 	struct timers *timers = renderer_timers(n->renderer);
@@ -43,6 +82,7 @@ static void write_stages(struct json *json, const struct node *n)
 		json_string(json, "name", stats.name);
 		json_u64(json, "count", stats.count);
 		json_f64(json, "mean_ms", stats.mean_ms);
+		json_f64(json, "median_ms", median_ms(timers, i));
 		json_f64(json, "min_ms", stats.min_ms);
 		json_f64(json, "max_ms", stats.max_ms);
 		json_f64(json, "last_ms", stats.last_ms);
@@ -93,6 +133,7 @@ int node_write_json(const struct node *n, uint64_t pictures_saved, char *text, s
 	json_u64(&json, "state_frame", n->state_frame);
 	json_hash(&json, "state_hash", n->state_hash);
 	write_renderer(&json, n);
+	write_share(&json, n);
 	write_wire(&json, n);
 	json_close(&json, '}');
 	*out_len = json.len;

@@ -2,7 +2,8 @@
 # its sources to RENDERER_SOURCES and its GLSL files to SHADERS.
 RENDERER_SOURCES = \
 	renderer/create.c renderer/frame.c renderer/frame.h renderer/irradiance.c renderer/read.c \
-	renderer/renderer.c renderer/renderer.h renderer/renderer_private.h
+	renderer/renderer.c renderer/renderer.h renderer/renderer_private.h \
+	renderer/share.c
 
 include $(top_srcdir)/renderer/gl/local.mk
 include $(top_srcdir)/renderer/gi/local.mk

@@ -94,6 +94,17 @@ bool renderer_gi_stats(const struct renderer *renderer, struct gi_stats *out);
 uint64_t renderer_light_hash(struct renderer *renderer);
 struct timers *renderer_timers(struct renderer *renderer);
 
+/*
+ * Work that the nodes share out; renderer/gi/gi.h says what each call does.
+ * Without a method that can, they give GR_ERR_UNSUPPORTED, and 0 bytes.
+ */
+/* Room for all slices of up to `nodes` nodes: the largest count times its longest slice. */
+size_t renderer_share_bytes(const struct renderer *renderer, unsigned nodes);
+int renderer_share_set(struct renderer *renderer, unsigned index, unsigned count);
+/* Once, when renderer_finished has said so. */
+int renderer_share_take(struct renderer *renderer, uint8_t *bytes, size_t size, size_t *out_len);
+int renderer_share_put(struct renderer *renderer, const uint8_t *bytes, size_t len);
+
 struct renderer_stats {
 	uint64_t frames, skipped_eyes;
 	uint64_t shadow_updates, gi_updates; /* frames in which the stage ran */

@@ -136,7 +136,10 @@ static void judge(struct summary *summary)
 			judge_node(summary, i);
 }
 
-/* Do all nodes hold the same light? Only nodes with the same GL can be asked to, bit by bit. */
+/*
+ * Do all nodes hold the same light? Bit by bit only nodes with the same GL can be
+ * asked to, and those that share one out.
+ */
 static bool light_agrees(const struct summary *summary)
 {
 	struct json_object *first = summary->nodes[0];
@@ -144,7 +147,11 @@ static bool light_agrees(const struct summary *summary)
 	for (size_t i = 1; i < summary->demo->layout->node_count; i++) {
 		struct json_object *node = summary->nodes[i];
 
-		if (strcmp(report_text(node, "renderer"), report_text(first, "renderer")) == 0 &&
+		bool shared = report_count(first, "share.nodes") > 1 &&
+			      report_count(node, "share.nodes") > 1;
+
+		if ((shared || strcmp(report_text(node, "renderer"),
+				      report_text(first, "renderer")) == 0) &&
 		    strcmp(report_text(node, "light_hash"), report_text(first, "light_hash")) != 0)
 			return false;
 	}
@@ -162,7 +169,7 @@ static struct json_object *node_json(const struct summary *summary, size_t i)
 	static const char *const members[] = {
 		"applied", "drawn", "swapped", "mismatches", "joined", "skipped_eyes",
 		"shadow_updates", "gi_updates", "gl_errors", "nonfinite", "state_hash",
-		"light_hash", "renderer", "platform", "width", "height", "pictures", "wire", "stages",
+		"light_hash", "share", "renderer", "platform", "width", "height", "pictures", "wire", "stages",
 	};
 	const struct demo *demo = summary->demo;
 	const struct layout_node *node = &demo->layout->nodes[i];
@@ -184,7 +191,7 @@ static struct json_object *summary_json(struct summary *summary)
 {
 	static const char *const members[] = {
 		"frames_complete", "frames_incomplete", "late", "evicted", "state_hash", "skew_us",
-		"commit_to_applied_us", "commit_to_swap_sent_us", "commit_to_last_swap_us", "wire",
+		"commit_to_applied_us", "commit_to_swap_sent_us", "commit_to_last_swap_us", "share", "wire",
 	};
 	const struct demo *demo = summary->demo;
 	struct json_object *out = json_object_new_object();
@@ -228,6 +235,33 @@ static void print_nodes(const struct summary *summary)
 		       (long long)report_count(report, "wire.bytes_in"),
 		       (long long)report_count(report, "wire.bytes_out"));
 	}
+}
+
+/* A light that the nodes share out: what it cost, what was missing, and that all hold the same. */
+static void print_share(const struct summary *summary)
+{
+	int64_t sent = 0, received = 0, late = 0, lost = 0, bytes = 0;
+	int frames = summary->demo->options.frames;
+
+	if (!json_object_get_boolean(report_member(summary->nodes[0], "share.on")))
+		return;
+	for (size_t i = 0; i < summary->demo->layout->node_count; i++) {
+		struct json_object *node = summary->nodes[i];
+
+		sent += report_count(node, "share.sent");
+		bytes += report_count(node, "share.bytes_sent");
+		received += report_count(node, "share.received");
+		late += report_count(node, "share.late");
+		lost += report_count(node, "share.lost");
+	}
+	printf("light shared by %lld nodes: %lld slices sent, %lld received, %lld late, %lld lost; "
+	       "%.0f bytes a frame made, %.0f passed on\n",
+	       (long long)report_count(summary->nodes[0], "share.nodes"), (long long)sent,
+	       (long long)received, (long long)late, (long long)lost,
+	       (double)bytes / frames, report_number(summary->master, "share.bytes_out") / frames);
+	if (light_agrees(summary))
+		printf("all nodes hold the same light, %s\n",
+		       report_text(summary->nodes[0], "light_hash"));
 }
 
 /* One line a stage: the mean over the nodes that run it, and the slowest. */
@@ -312,9 +346,10 @@ static void print_summary(const struct summary *summary)
 		       (long long)report_count(summary->master, "wire.repairs"),
 		       (long long)report_count(summary->master, "wire.bytes_in"));
 	}
+	print_share(summary);
 	print_stages(summary);
 	if (!light_agrees(summary))
-		fprintf(stderr, "warning: nodes with the same GL hold different light\n");
+		fprintf(stderr, "warning: nodes that should hold the same light do not\n");
 	if (report_member(summary->nodes[0], "renderer"))
 		printf("%s; ", report_text(summary->nodes[0], "renderer"));
 	print_frames(summary);

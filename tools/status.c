@@ -45,6 +45,22 @@ static void print_nodes(struct json_object *status)
 	}
 }
 
+/* Of a room whose nodes share out the light. */
+static void print_share(struct json_object *status)
+{
+	if (!json_object_get_boolean(report_member(status, "share.on")))
+		return;
+	printf("light of %lld nodes: %lld slices, %lld bytes in, %lld out; late %lld, lost %lld, %lld "
+	       "pieces repaired\n",
+	       (long long)report_count(status, "share.nodes"),
+	       (long long)report_count(status, "share.slices"),
+	       (long long)report_count(status, "share.bytes_in"),
+	       (long long)report_count(status, "share.bytes_out"),
+	       (long long)report_count(status, "share.late"),
+	       (long long)report_count(status, "share.lost"),
+	       (long long)report_count(status, "share.repairs"));
+}
+
 static void print_bad(struct json_object *status)
 {
 	struct json_object *bad = report_member(status, "wire.bad");
@@ -80,6 +96,7 @@ static void print_status(struct json_object *status)
 	       (long long)report_count(status, "wire.bytes_out"),
 	       (long long)report_count(status, "wire.repairs"),
 	       (long long)report_count(status, "wire.bytes_in"));
+	print_share(status);
 	print_bad(status);
 }
 
