@@ -20,6 +20,12 @@ tests_unit_test_bench_stats_SOURCES = tests/unit/test_bench_stats.c tests/unit/u
 tests_unit_test_bench_stats_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_bench_stats_LDADD = tools/libgbench.a $(BASE_LIBS) $(CMOCKA_LIBS) -lm
 
+check_PROGRAMS += tests/unit/test_bench
+TESTS += tests/unit/test_bench
+tests_unit_test_bench_SOURCES = tests/unit/test_bench.c tests/unit/unit.h tests/unit/gl.h
+tests_unit_test_bench_CFLAGS = $(TEST_CFLAGS) $(EPOXY_CFLAGS) $(JSONC_CFLAGS)
+tests_unit_test_bench_LDADD = tools/libgbench.a tools/libgtools.a $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm
+
 # The command from outside. Scripts run in the build folder and read $(srcdir).
 dist_check_SCRIPTS += tests/command/check.sh tests/command/demo.sh tests/command/double.sh \
 	tests/command/report.sh

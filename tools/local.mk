@@ -30,4 +30,4 @@ tools_grotto_SOURCES = \
 tools_grotto_CPPFLAGS = $(AM_CPPFLAGS) -DGROTTO_SBINDIR='"$(sbindir)"' \
 	-DGROTTO_PKGLIBEXECDIR='"$(pkglibexecdir)"'
 tools_grotto_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(JSONC_CFLAGS)
-tools_grotto_LDADD = tools/libgtools.a $(RENDERER_LIBS) $(PROTOCOL_LIBS) $(CONFIG_LIBS) $(JSONC_LIBS)
+tools_grotto_LDADD = tools/libgbench.a tools/libgtools.a $(RENDERER_LIBS) $(PROTOCOL_LIBS) $(CONFIG_LIBS) $(JSONC_LIBS)
