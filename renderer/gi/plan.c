@@ -1,0 +1,302 @@
+#include "renderer/gi/plan.h"
+
+#include <math.h>
+#include <sodium.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Surfels on a surface: of surfel_bake.c, Poisson discs that leave no gap. */
+#define SURFEL_DENSITY 0.7
+/* Rays that baking may take: about half a minute on two cores. */
+#define RAYS_MOST 2.4e7
+#define SURFELS_MOST 100000.0
+#define SPACING_MOST 1000.0
+#define PROBES_RAYS_MOST 2.4e7
+
+const struct gi_costs gi_costs_usual = {
+	.lattice_frame = 2e6,
+	.lattice_cell_step = 140,
+	.surfel_frame = 5e5,
+	.surfel_tap = 40,
+	.surfel_link = 3,
+};
+
+static const double surfel_counts[] = { 500, 1000, 2000, 4000, 8000, 16000, 32000, 64000 };
+static const int link_counts[] = { 64, 128, 256, 512, 1024 };
+static const int gather_counts[] = { 1, 2, 4 };
+static const int tap_counts[] = { 16, 32, 64 };
+static const int probe_counts[] = { 4, 8, 12, 16, 24, 32 };
+static const int lattices[] = { 8, 12, 16, 20, 24, 32, 48, 64 };
+static const int step_counts[] = { 2, 4, 8, 16 };
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+bool gi_costs_valid(const struct gi_costs *c)
+{
+	const double frames[] = { c->lattice_frame, c->surfel_frame };
+	const double units[] = { c->lattice_cell_step, c->surfel_tap, c->surfel_link };
+
+	for (size_t i = 0; i < COUNT(frames); i++)
+		if (!(frames[i] >= 0 && frames[i] < 1e11))
+			return false;
+	for (size_t i = 0; i < COUNT(units); i++)
+		if (!(units[i] > 0 && units[i] < 1e9))
+			return false;
+	return true;
+}
+
+/* Cells (or probes) of a grid with so many along the longest side. */
+static double grid_cells(const struct gi_facts *facts, int longest)
+{
+	double most = fmax(fmax(facts->size_m[0], facts->size_m[1]), facts->size_m[2]);
+	double cells = 1;
+
+	for (int i = 0; i < 3 && most > 0; i++)
+		cells *= fmax(1, ceil(facts->size_m[i] / most * longest));
+	return cells;
+}
+
+static double surfels_of(const struct gi_facts *facts, const struct scene_gi *gi)
+{
+	double spacing = (double)gi->spacing_m;
+
+	return spacing > 0 ? SURFEL_DENSITY * facts->area_m2 / (spacing * spacing) : 5000;
+}
+
+double gi_plan_cost_ms(const struct gi_facts *facts, const struct scene_gi *gi,
+		       const struct gi_costs *c)
+{
+	double lamps = facts->lamps_fixed + facts->lamps_moving, surfels, ns = 0;
+
+	switch (gi->method) {
+	case SCENE_GI_LPV:
+		ns = c->lattice_frame + grid_cells(facts, gi->lattice) * gi->steps * c->lattice_cell_step;
+		break;
+	case SCENE_GI_SURFELS:
+	case SCENE_GI_PROBES:
+		surfels = surfels_of(facts, gi);
+		ns = c->surfel_frame + surfels * gi->taps * lamps * c->surfel_tap +
+		     surfels * gi->links * gi->gathers * c->surfel_link;
+		if (gi->method == SCENE_GI_PROBES)
+			ns += grid_cells(facts, gi->probes) * gi->links * c->surfel_link;
+		break;
+	case SCENE_GI_NONE:
+	case SCENE_GI_AUTO:
+		break;
+	}
+	return ns * 1e-6;
+}
+
+uint64_t gi_plan_hash(const struct scene_gi *gi)
+{
+	static const unsigned char key[crypto_shorthash_KEYBYTES] = "grotto gi plan";
+	unsigned char digest[crypto_shorthash_BYTES];
+	int32_t shape[8] = { (int32_t)gi->method };
+	uint64_t hash = 0;
+
+	if (gi->method == SCENE_GI_LPV) {
+		const int32_t of[] = { (int32_t)gi->lpv_mode, gi->lattice, gi->steps, gi->rsm_pixels,
+				       gi->link_rays };
+
+		memcpy(shape + 1, of, sizeof of);
+	} else if (gi->method != SCENE_GI_NONE) {
+		const int32_t of[] = { 0, gi->links, gi->gathers, gi->taps, gi->probes };
+
+		memcpy(shape + 1, of, sizeof of);
+		memcpy(shape + 1, &gi->spacing_m, sizeof gi->spacing_m);
+	}
+	/* as bytes in one order on every machine */
+	for (size_t i = 0; i < COUNT(shape); i++) {
+		uint32_t bits = (uint32_t)shape[i];
+
+		for (int b = 0; b < 4; b++)
+			((unsigned char *)&shape[i])[b] = (unsigned char)(bits >> (8 * b));
+	}
+	crypto_shorthash(digest, (const unsigned char *)shape, sizeof shape, key);
+	for (int i = 0; i < 8; i++)
+		hash |= (uint64_t)digest[i] << (8 * i);
+	return hash ? hash : 1; /* 0 says: no plan */
+}
+
+struct search {
+	const struct gi_facts *facts;
+	const struct gi_costs *costs;
+	double budget_ms;
+	struct scene_gi best;
+	double cost, error;
+	bool any, within;
+};
+
+static double kind_of(double error)
+{
+	return floor(log(error) / log(GI_PLAN_ALIKE));
+}
+
+/* Fits before does not fit; then the smaller error, of alike ones the cheaper. */
+static bool better(const struct search *s, double cost, double error, bool within)
+{
+	if (!s->any || within != s->within)
+		return !s->any || within;
+	if (!within)
+		return cost < s->cost;
+	if (kind_of(error) < kind_of(s->error) || kind_of(error) > kind_of(s->error))
+		return error < s->error;
+	return cost < s->cost;
+}
+
+static void consider(struct search *s, const struct scene_gi *gi)
+{
+	double cost = gi_plan_cost_ms(s->facts, gi, s->costs), error = gi_plan_error(s->facts, gi);
+	bool within = cost <= s->budget_ms;
+
+	if (!isfinite(cost) || !isfinite(error) || !better(s, cost, error, within))
+		return;
+	s->best = *gi;
+	s->cost = cost;
+	s->error = error;
+	s->within = within;
+	s->any = true;
+}
+
+static void consider_lattices(struct search *s, struct scene_gi gi)
+{
+	gi.method = SCENE_GI_LPV;
+	gi.lpv_mode = SCENE_LPV_REPAIRED;
+	gi.share = SCENE_SHARE_LOCAL; /* a lattice is not shared out */
+	for (size_t i = 0; i < COUNT(lattices); i++) {
+		for (size_t k = 0; k < COUNT(step_counts); k++) {
+			gi.lattice = lattices[i];
+			gi.steps = step_counts[k];
+			consider(s, &gi);
+		}
+	}
+}
+
+/* Two digits: what a person would write; at most what a scene file may say. */
+static float spacing_for(const struct gi_facts *facts, double count)
+{
+	double spacing = fmin(sqrt(SURFEL_DENSITY * facts->area_m2 / count), SPACING_MOST);
+	double power = pow(10, floor(log10(spacing)) - 1);
+
+	return (float)(round(spacing / power) * power);
+}
+
+static void consider_probes(struct search *s, struct scene_gi gi)
+{
+	gi.method = SCENE_GI_PROBES;
+	for (size_t i = 0; i < COUNT(probe_counts); i++) {
+		gi.probes = probe_counts[i];
+		if (grid_cells(s->facts, gi.probes) * gi.links <= PROBES_RAYS_MOST)
+			consider(s, &gi);
+	}
+}
+
+static void consider_surfels(struct search *s, struct scene_gi gi, bool probes)
+{
+	gi.method = SCENE_GI_SURFELS;
+	for (size_t n = 0; n < COUNT(surfel_counts); n++) {
+		gi.spacing_m = spacing_for(s->facts, surfel_counts[n]);
+		for (size_t l = 0; l < COUNT(link_counts); l++) {
+			gi.links = link_counts[l];
+			if (surfels_of(s->facts, &gi) > SURFELS_MOST ||
+			    surfels_of(s->facts, &gi) * gi.links > RAYS_MOST)
+				continue;
+			for (size_t k = 0; k < COUNT(gather_counts) * COUNT(tap_counts); k++) {
+				gi.gathers = gather_counts[k % COUNT(gather_counts)];
+				gi.taps = tap_counts[k / COUNT(gather_counts)];
+				if (probes)
+					consider_probes(s, gi);
+				else
+					consider(s, &gi);
+			}
+		}
+	}
+}
+
+static bool has_light(const struct gi_facts *facts)
+{
+	return facts->lamps_fixed + facts->lamps_moving > 0 || facts->emissive_triangles > 0 ||
+	       facts->environment;
+}
+
+static void say_settings(char *text, size_t size, const struct scene_gi *gi)
+{
+	switch (gi->method) {
+	case SCENE_GI_LPV:
+		snprintf(text, size, "a lattice of %d cells, %d steps", gi->lattice, gi->steps);
+		break;
+	case SCENE_GI_SURFELS:
+		snprintf(text, size, "surfels %.3g m apart, %d links, %d gather%s, %d taps",
+			 (double)gi->spacing_m, gi->links, gi->gathers, gi->gathers == 1 ? "" : "s", gi->taps);
+		break;
+	case SCENE_GI_PROBES:
+		snprintf(text, size, "%d probes along the longest side, surfels %.3g m apart, %d links, %d gather%s, %d taps",
+			 gi->probes, (double)gi->spacing_m, gi->links, gi->gathers,
+			 gi->gathers == 1 ? "" : "s", gi->taps);
+		break;
+	case SCENE_GI_NONE:
+	case SCENE_GI_AUTO:
+		snprintf(text, size, "none");
+		break;
+	}
+}
+
+static const char *reason(const struct gi_facts *facts, const struct gi_plan *plan)
+{
+	if (plan->gi.method == SCENE_GI_NONE)
+		return has_light(facts) ? "no surface can be lit"
+					: "no lamp, no emissive surface, no environment";
+	if (facts->scattering_per_m > 0)
+		return facts->environment ? "the air scatters, which only the lattice carries; it leaves the environment out"
+					  : "the air scatters, which only the lattice carries";
+	if (facts->moving_geometry)
+		return "things move, and only probes light what is not baked";
+	return facts->environment ? "static surfaces and an environment, which the lattice does not know"
+				  : "static surfaces";
+}
+
+static void say(struct gi_plan *plan, const struct gi_facts *facts, double budget_ms)
+{
+	char settings[160];
+
+	say_settings(settings, sizeof settings, &plan->gi);
+	if (plan->gi.method == SCENE_GI_NONE) {
+		snprintf(plan->why, sizeof plan->why, "none: %s", reason(facts, plan));
+		return;
+	}
+	snprintf(plan->why, sizeof plan->why,
+		 "%s: %s; expected %.3g ms a frame while the light changes%s, %.2g %% error (nRMSE)%s", settings,
+		 reason(facts, plan), plan->update_ms, facts->lamps_moving ? "" : " (no lamp moves by itself)",
+		 100 * plan->error, plan->within ? "" : "; the budget is less than the least costs");
+	if (!plan->within && strlen(plan->why) + 32 < sizeof plan->why)
+		snprintf(plan->why + strlen(plan->why), 32, " (%.3g ms)", budget_ms);
+}
+
+void gi_plan_make(struct gi_plan *out, const struct gi_facts *facts, const struct scene_gi *wanted,
+		  const struct gi_costs *costs)
+{
+	struct search s = { .facts = facts, .costs = costs };
+
+	/* a NaN fits nothing */
+	s.budget_ms = wanted->budget_ms > 0 ? (double)wanted->budget_ms : 0;
+	if (!gi_costs_valid(costs))
+		s.costs = &gi_costs_usual;
+	if (has_light(facts) && isfinite(facts->area_m2) && facts->area_m2 > 0) {
+		if (facts->scattering_per_m > 0) {
+			consider_lattices(&s, *wanted);
+		} else {
+			consider_surfels(&s, *wanted, facts->moving_geometry);
+			if (!facts->environment && !facts->moving_geometry &&
+			    wanted->share == SCENE_SHARE_LOCAL)
+				consider_lattices(&s, *wanted);
+		}
+	}
+	*out = (struct gi_plan){ .gi = s.any ? s.best : *wanted, .update_ms = s.cost, .error = s.error,
+				 .within = s.within };
+	if (!s.any) {
+		out->gi.method = SCENE_GI_NONE;
+		out->within = true;
+		out->error = has_light(facts);
+	}
+	out->hash = gi_plan_hash(&out->gi);
+	say(out, facts, s.budget_ms);
+}

@@ -1,0 +1,246 @@
+/* The planner: what it chooses, why, and that more budget is never worse, over many facts. */
+#include "tests/unit/unit.h"
+
+#include "base/result.h"
+#include "renderer/gi/plan.h"
+
+#include <math.h>
+
+/* A room like the Cornell box with one lamp that is carried about. */
+static struct gi_facts room(void)
+{
+	return (struct gi_facts){ .area_m2 = 200, .size_m = { 5.5, 5.5, 5.6 }, .triangles = 40,
+				  .lamps_moving = 1 };
+}
+
+static struct scene_gi wish(double budget_ms)
+{
+	return (struct scene_gi){ .method = SCENE_GI_AUTO, .budget_ms = (float)budget_ms, .lattice = 32,
+				  .steps = 8, .rsm_pixels = 128, .link_rays = 32, .links = 256,
+				  .gathers = 1, .taps = 16, .probes = 8 };
+}
+
+static struct gi_plan plan_for(const struct gi_facts *facts, double budget_ms)
+{
+	const struct scene_gi wanted = wish(budget_ms);
+	struct gi_plan plan;
+
+	gi_plan_make(&plan, facts, &wanted, &gi_costs_usual);
+	return plan;
+}
+
+static void method_follows_the_scene(void **state)
+{
+	struct gi_facts facts = room();
+	struct gi_plan plan = plan_for(&facts, 30);
+
+	(void)state;
+	assert_int_equal(plan.gi.method, SCENE_GI_SURFELS);
+	assert_true(plan.within && plan.update_ms <= 30 && plan.error < 0.1);
+	assert_non_null(strstr(plan.why, "surfels"));
+	assert_non_null(strstr(plan.why, "static surfaces"));
+	printf("# %s\n", plan.why);
+	facts.scattering_per_m = 0.1;
+	plan = plan_for(&facts, 30);
+	assert_int_equal(plan.gi.method, SCENE_GI_LPV);
+	assert_non_null(strstr(plan.why, "the air scatters"));
+	printf("# %s\n", plan.why);
+	facts.environment = true;
+	plan = plan_for(&facts, 30);
+	assert_int_equal(plan.gi.method, SCENE_GI_LPV);
+	assert_non_null(strstr(plan.why, "leaves the environment out"));
+	facts.scattering_per_m = 0;
+	for (double budget = 0.01; budget < 1000; budget *= 3) {
+		plan = plan_for(&facts, budget);
+		assert_int_equal(plan.gi.method, SCENE_GI_SURFELS);
+	}
+	facts.moving_geometry = true;
+	plan = plan_for(&facts, 100);
+	assert_int_equal(plan.gi.method, SCENE_GI_PROBES);
+	assert_non_null(strstr(plan.why, "things move"));
+}
+
+static void nothing_to_light(void **state)
+{
+	struct gi_facts facts = room();
+	struct gi_plan plan;
+
+	(void)state;
+	facts.lamps_moving = 0;
+	plan = plan_for(&facts, 8);
+	assert_int_equal(plan.gi.method, SCENE_GI_NONE);
+	assert_non_null(strstr(plan.why, "no lamp, no emissive surface, no environment"));
+	assert_true(plan.error <= 0 && plan.update_ms <= 0 && plan.within);
+	facts.emissive_triangles = 2;
+	assert_int_equal(plan_for(&facts, 8).gi.method, SCENE_GI_SURFELS);
+	facts.area_m2 = 0;
+	plan = plan_for(&facts, 8);
+	assert_int_equal(plan.gi.method, SCENE_GI_NONE);
+	assert_non_null(strstr(plan.why, "no surface"));
+}
+
+static void absurd_wishes(void **state)
+{
+	const double budgets[] = { 0, -1, 1e-30, (double)NAN, -(double)INFINITY };
+	struct gi_facts facts = room();
+	struct gi_plan least = plan_for(&facts, 1e-9), most;
+
+	(void)state;
+	assert_false(least.within);
+	assert_non_null(strstr(least.why, "the budget is less than the least costs"));
+	for (size_t i = 0; i < sizeof budgets / sizeof *budgets; i++) {
+		struct gi_plan plan = plan_for(&facts, budgets[i]);
+
+		assert_int_equal(plan.hash, least.hash);
+		assert_false(plan.within);
+	}
+	most = plan_for(&facts, 1e30);
+	assert_true(most.within && most.error < least.error);
+	assert_int_equal(plan_for(&facts, (double)INFINITY).hash, most.hash);
+	facts.area_m2 = (double)NAN;
+	assert_int_equal(plan_for(&facts, 8).gi.method, SCENE_GI_NONE);
+	facts = room();
+	facts.mirror_share = (double)NAN;
+	assert_int_equal(plan_for(&facts, 8).gi.method, SCENE_GI_SURFELS);
+	facts = room();
+	facts.size_m[1] = (double)NAN;
+	assert_true(isfinite(plan_for(&facts, 8).error));
+}
+
+static void costs_that_are_none(void **state)
+{
+	const struct gi_facts facts = room();
+	const struct scene_gi wanted = wish(20);
+	struct gi_plan usual, plan;
+	struct gi_costs costs = gi_costs_usual;
+
+	(void)state;
+	assert_true(gi_costs_valid(&costs));
+	gi_plan_make(&usual, &facts, &wanted, &costs);
+	costs.surfel_link = (double)NAN;
+	assert_false(gi_costs_valid(&costs));
+	gi_plan_make(&plan, &facts, &wanted, &costs);
+	assert_int_equal(plan.hash, usual.hash);
+	costs.surfel_link = 0;
+	assert_false(gi_costs_valid(&costs));
+	costs = gi_costs_usual;
+	costs.lattice_frame = -1;
+	assert_false(gi_costs_valid(&costs));
+	/* a GPU a thousand times as fast affords more */
+	costs = gi_costs_usual;
+	costs.surfel_link /= 1000;
+	costs.surfel_tap /= 1000;
+	costs.surfel_frame /= 1000;
+	gi_plan_make(&plan, &facts, &wanted, &costs);
+	assert_true(plan.error < usual.error);
+	printf("# fast GPU, 20 ms: %s\n", plan.why);
+}
+
+static struct gi_facts any_facts(struct unit_random *r)
+{
+	struct gi_facts facts = { 0 };
+	double size = pow(10, unit_random_range(r, -3, 4));
+
+	for (int i = 0; i < 3; i++)
+		facts.size_m[i] = size * unit_random_range(r, 0.01, 1);
+	facts.area_m2 = size * size * unit_random_range(r, 0.1, 20);
+	facts.triangles = unit_random_u32(r) % 2000000;
+	facts.emissive_triangles = unit_random_u32(r) % 3;
+	facts.lamps_fixed = (int)(unit_random_u32(r) % 3);
+	facts.lamps_moving = (int)(unit_random_u32(r) % 3);
+	facts.scattering_per_m = unit_random_u32(r) % 4 ? 0 : 0.2;
+	facts.environment = unit_random_u32(r) % 3 == 0;
+	facts.mirror_share = unit_random_u32(r) % 2 ? 0 : unit_random_range(r, 0, 1);
+	facts.moving_geometry = unit_random_u32(r) % 5 == 0;
+	return facts;
+}
+
+static void more_budget_is_never_worse(void **state)
+{
+	struct unit_random r = unit_random_start("more_budget_is_never_worse");
+
+	(void)state;
+	for (int round = 0; round < 300; round++) {
+		const struct gi_facts facts = any_facts(&r);
+		struct gi_costs costs = gi_costs_usual;
+		double last = INFINITY;
+
+		costs.lattice_cell_step *= pow(10, unit_random_range(&r, -4, 1));
+		costs.surfel_link *= pow(10, unit_random_range(&r, -4, 1));
+		costs.surfel_tap *= pow(10, unit_random_range(&r, -4, 1));
+		for (double budget = 1e-3; budget < 1e4; budget *= 1.7) {
+			const struct scene_gi wanted = wish(budget);
+			struct gi_plan plan, again;
+
+			gi_plan_make(&plan, &facts, &wanted, &costs);
+			gi_plan_make(&again, &facts, &wanted, &costs);
+			assert_int_equal(plan.hash, again.hash);
+			assert_int_not_equal(plan.gi.method, SCENE_GI_AUTO);
+			if (!(plan.error <= last * (1 + 1e-12)))
+				fail_msg("budget %g: error %g after %g", budget, plan.error, last);
+			if (plan.gi.method != SCENE_GI_NONE) {
+				assert_true(plan.within == (plan.update_ms <= (double)wanted.budget_ms));
+				assert_true(plan.update_ms > 0 && isfinite(plan.update_ms));
+			}
+			assert_true(strlen(plan.why) > 0 && strlen(plan.why) < sizeof plan.why - 1);
+			last = plan.error;
+		}
+	}
+}
+
+/* What the plan says must be what a scene file may say. */
+static void settings_are_in_range(void **state)
+{
+	struct unit_random r = unit_random_start("settings_are_in_range");
+
+	(void)state;
+	for (int round = 0; round < 500; round++) {
+		const struct gi_facts facts = any_facts(&r);
+		struct gi_plan plan = plan_for(&facts, pow(10, unit_random_range(&r, -1, 4)));
+
+		assert_in_range(plan.gi.lattice, 8, 128);
+		assert_in_range(plan.gi.steps, 1, 128);
+		assert_in_range(plan.gi.links, 16, 4096);
+		assert_in_range(plan.gi.gathers, 1, 16);
+		assert_in_range(plan.gi.taps, 16, 64);
+		assert_in_range(plan.gi.probes, 1, 64);
+		assert_true(plan.gi.spacing_m >= 0 && plan.gi.spacing_m <= 1000);
+	}
+}
+
+static void hash_is_of_what_shapes_the_light(void **state)
+{
+	struct scene_gi a = wish(8), b;
+
+	(void)state;
+	a.method = SCENE_GI_SURFELS;
+	b = a;
+	b.budget_ms = 3;
+	b.lattice = 48;
+	assert_int_equal(gi_plan_hash(&a), gi_plan_hash(&b));
+	b.links = 255;
+	assert_int_not_equal(gi_plan_hash(&a), gi_plan_hash(&b));
+	b = a;
+	b.spacing_m = 0.25f;
+	assert_int_not_equal(gi_plan_hash(&a), gi_plan_hash(&b));
+	a.method = b.method = SCENE_GI_LPV;
+	assert_int_equal(gi_plan_hash(&a), gi_plan_hash(&b));
+	b.steps++;
+	assert_int_not_equal(gi_plan_hash(&a), gi_plan_hash(&b));
+	assert_int_not_equal(gi_plan_hash(&a), 0);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(method_follows_the_scene),
+		cmocka_unit_test(nothing_to_light),
+		cmocka_unit_test(absurd_wishes),
+		cmocka_unit_test(costs_that_are_none),
+		cmocka_unit_test(more_budget_is_never_worse),
+		cmocka_unit_test(settings_are_in_range),
+		cmocka_unit_test(hash_is_of_what_shapes_the_light),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
