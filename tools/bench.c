@@ -78,7 +78,7 @@ int command_bench(int argc, char **argv)
 		{ "points", 0, CLI_INT, &o.points, 16, 100000, "N",
 		  "of surfaces where light is compared (600)" },
 		{ "reference-samples", 0, CLI_INT, &o.samples, 2, 1000000, "N",
-		  "of the truth a pixel; points get 16 times as many (128)" },
+		  "of the truth a pixel; points get 128 times as many (128)" },
 		{ "until-error", 0, CLI_REAL, &o.until_error_percent, 0, 100, "PERCENT",
 		  "stop the truth sooner, at this standard error (0: do not)" },
 		{ "out", 'o', CLI_TEXT, &o.out, 0, 0, "DIR",

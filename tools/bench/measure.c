@@ -103,6 +103,11 @@ static int compare_points(struct run *run, struct bench_result *out)
 		result = stats_compare(&run->settled[0][0], &truth->irradiance[0][0], NULL, truth->count, 3,
 				       scratch, &out->irradiance);
 	free(scratch);
+	/* the truth's noise is no error of the method's: independent, so squares add */
+	out->nrmse_raw = out->irradiance.nrmse;
+	if (result == GR_OK && truth->noise > 0)
+		out->irradiance.nrmse = sqrt(fmax(out->nrmse_raw * out->nrmse_raw -
+						  truth->noise * truth->noise, 0));
 	out->leak = result == GR_OK ? leak_of((const float(*)[3])run->settled, truth,
 					      out->irradiance.mean) : (double)NAN;
 	return result < 0 ? result : GR_OK;

@@ -46,7 +46,8 @@ struct bench_result {
 	double frame_ms;         /* sum of the stages' medians */
 	bool moves;              /* the scene has a lamp to move; false: the air changed a little instead */
 	int still_frames;        /* frames until nothing was computed any more; -1: it did not stop */
-	struct stats_error irradiance;
+	struct stats_error irradiance; /* its nrmse without the truth's noise */
+	double nrmse_raw;              /* with it */
 	double leak;             /* mean where the truth is dark, over the mean elsewhere; NaN: nowhere is dark */
 	struct bench_picture_error total, indirect;
 	struct stats_flicker flicker;     /* NaN without a lamp */

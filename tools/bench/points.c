@@ -8,9 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define OPEN_RAYS 24 /* that tell whether a point lies inside of something */
+
 struct sampler {
 	const struct scene *scene;
 	const struct rays *rays;
+	const bool *one_sided; /* of each triangle */
 	uint64_t state;
 	float margin;
 };
@@ -75,6 +78,32 @@ static bool stands_clear(const struct sampler *s, const struct renderer_point *p
 	return true;
 }
 
+/*
+ * Not enclosed by a solid thing that stands on it (the floor under a box): most
+ * of what it sees is not the unlit back of a surface.
+ */
+static bool is_open(struct sampler *s, const struct renderer_point *p)
+{
+	int backs = 0;
+	vec3 from;
+
+	for (int i = 0; i < 3; i++)
+		from[i] = p->position[i] + 0.05f * s->margin * p->normal[i];
+	for (int k = 0; k < OPEN_RAYS; k++) {
+		double z = 2 * uniform(&s->state) - 1, turn = 2 * M_PI * uniform(&s->state);
+		double r = sqrt(1 - z * z);
+		vec3 way = { (float)(r * cos(turn)), (float)(r * sin(turn)), (float)z };
+		struct ray_hit hit;
+
+		/* the sphere's points about the normal's tip: cosine-distributed */
+		glm_vec3_add(way, (float *)p->normal, way);
+		glm_vec3_normalize(way);
+		backs += rays_nearest(s->rays, from, way, INFINITY, &hit) && s->one_sided[hit.triangle] &&
+			 glm_vec3_dot(hit.normal, way) > 0;
+	}
+	return 2 * backs < OPEN_RAYS;
+}
+
 static void place(struct sampler *s, size_t index, const vec3 normal, bool back,
 		  struct renderer_point *out)
 {
@@ -125,7 +154,7 @@ static size_t spread(struct sampler *s, double step, size_t wanted, struct rende
 			for (int side = 0; side < (m->two_sided ? 2 : 1); side++) {
 				for (at += area; next < at && tried < wanted; tried++) {
 					place(s, index, normal, side, &out[taken]);
-					taken += stands_clear(s, &out[taken]);
+					taken += stands_clear(s, &out[taken]) && is_open(s, &out[taken]);
 					next = ((double)(tried + 1) + uniform(&s->state)) * step;
 				}
 			}
@@ -134,13 +163,25 @@ static size_t spread(struct sampler *s, double step, size_t wanted, struct rende
 	return taken;
 }
 
+static bool *find_one_sided(const struct scene *scene)
+{
+	bool *one_sided = calloc(scene->index_count / 3 + 1, sizeof *one_sided);
+
+	for (size_t d = 0; one_sided && d < scene->draw_count; d++)
+		for (size_t i = 0; i < scene->draws[d].index_count; i += 3)
+			one_sided[(scene->draws[d].first_index + i) / 3] =
+				!scene->materials[scene->draws[d].material].two_sided;
+	return one_sided;
+}
+
 int bench_points_create(struct bench_points *out, const struct scene *scene, size_t wanted,
 			uint64_t seed)
 {
 	double area = lit_area(scene);
 	struct sampler s = { .scene = scene, .state = seed };
 	struct rays *rays = NULL;
-	int result;
+	bool *one_sided;
+	int result = GR_ERR_NOMEM;
 
 	*out = (struct bench_points){ 0 };
 	if (!(area > 0) || !wanted)
@@ -148,21 +189,20 @@ int bench_points_create(struct bench_points *out, const struct scene *scene, siz
 	for (int i = 0; i < 3; i++)
 		s.margin = fmaxf(s.margin, (float)POINTS_MARGIN * (scene->max[i] - scene->min[i]));
 	out->points = calloc(wanted, sizeof *out->points);
-	if (!out->points)
-		return GR_ERR_NOMEM;
-	result = rays_create(&rays, scene);
-	if (result != GR_OK) {
-		bench_points_finish(out);
-		return result;
+	s.one_sided = one_sided = find_one_sided(scene);
+	if (out->points && one_sided)
+		result = rays_create(&rays, scene);
+	if (result == GR_OK) {
+		s.rays = rays;
+		out->area = area / (double)wanted;
+		out->count = spread(&s, out->area, wanted, out->points);
+		result = out->count ? GR_OK : GR_NOTHING;
 	}
-	s.rays = rays;
-	out->area = area / (double)wanted;
-	out->count = spread(&s, out->area, wanted, out->points);
 	rays_destroy(&rays);
-	if (out->count)
-		return GR_OK;
-	bench_points_finish(out);
-	return GR_NOTHING;
+	free(one_sided);
+	if (result != GR_OK)
+		bench_points_finish(out);
+	return result;
 }
 
 void bench_points_finish(struct bench_points *points)

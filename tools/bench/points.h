@@ -1,7 +1,8 @@
 /*
  * Points on the surfaces of a scene at which light is compared: spread evenly
  * by area over all sides that reflect diffusely, none right beside another
- * surface, where a point is in one patch and its neighbour in the next.
+ * surface, where a point is in one patch and its neighbour in the next, and none
+ * inside of a solid thing, where nobody sees it.
  */
 #ifndef GROTTO_TOOLS_BENCH_POINTS_H
 #define GROTTO_TOOLS_BENCH_POINTS_H

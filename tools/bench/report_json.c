@@ -92,6 +92,7 @@ static struct json_object *result(const struct bench_report *report, size_t i)
 	number(o, "added_ms", bench_added_ms(report, i));
 	integer(o, "still_frames", r->still_frames);
 	error(object(o, "irradiance"), &r->irradiance);
+	number(o, "irradiance_nrmse_with_noise", r->nrmse_raw);
 	number(o, "leak", r->leak);
 	picture(object(o, "picture"), &r->total);
 	picture(object(o, "indirect_picture"), &r->indirect);

@@ -135,7 +135,7 @@ void bench_report_table(FILE *out, const struct bench_report *report)
 
 	fprintf(out, "%s: camera %s, %d x %d pixels, %s\n", report->scene, view->camera.name,
 		view->camera.pixels[0], view->camera.pixels[1], report->renderer);
-	fprintf(out, "truth: %zu points of %d samples, noise %.2f %%; picture of %d samples, noise %.2f %%; ",
+	fprintf(out, "truth: %zu points of %d samples, noise %.2f %% (taken out of nRMSE); picture of %d samples, noise %.2f %%; ",
 		view->truth->count, report->point_samples, 100 * view->truth->noise,
 		report->picture_samples, 100 * view->truth->picture_noise);
 	if (view->truth->kept)

@@ -20,7 +20,7 @@ struct bench_options {
 	bool fit;              /* lines for the planner's model, too */
 	int gpu;
 };
-#define BENCH_POINT_SAMPLES 16
+#define BENCH_POINT_SAMPLES 128
 #define BENCH_OPTIONS \
 	{ .methods = "lpv,surfels,probes", .frames = 24, .points = 600, .samples = 128, \
 	  .out = "grotto-bench", .gpu = -1 }
