@@ -1,76 +1,96 @@
 #include "tools/bench/picture.h"
 
 #include "base/result.h"
+#include "renderer/image/compare.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 static double srgb(double v)
 {
 	return v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055;
 }
 
-void bench_picture_encode(struct image *image, const struct scene_tone *tone)
+int bench_picture_show(const struct image *picture, const struct scene_tone *tone, struct image *out)
 {
-	size_t count = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
-	double gamma = (double)scene_tone_gamma_encode(tone);
+	size_t count = (size_t)picture->width * (size_t)picture->height * (size_t)picture->channels;
+	int result = image_create(out, picture->width, picture->height, picture->channels);
 
-	for (size_t i = 0; i < count; i++) {
-		double v = fmax(0, (double)(image->data[i] * tone->exposure));
+	for (size_t i = 0; i < count && result == GR_OK; i++) {
+		double v = fmax(0, (double)(picture->data[i] * tone->exposure));
 
 		if (tone->curve == SCENE_CURVE_REINHARD)
 			v = v / (1 + v);
-		v = fmin(v, 1);
-		image->data[i] = (float)(tone->srgb ? srgb(v) : pow(v, gamma));
+		out->data[i] = (float)srgb(fmin(v, 1));
 	}
+	return result;
 }
 
-/* Means of blocks: 3 values each. Returns how many blocks. */
-static size_t block_means(const struct image *image, double *out)
+static int compare_blocks(const struct image *found, const struct image *truth,
+			  struct stats_error *out)
 {
-	size_t across = (size_t)image->width / BENCH_BLOCK, down = (size_t)image->height / BENCH_BLOCK;
+	struct image f = { 0 }, t = { 0 };
+	double *true_values = NULL, *scratch = NULL;
+	int result = compare_block_means(found, NULL, BENCH_BLOCK, &f);
 
-	for (size_t b = 0; b < across * down; b++) {
-		const float *first = image->data + 3 * BENCH_BLOCK * (b / across * (size_t)image->width +
-								      b % across);
+	if (result == GR_OK)
+		result = compare_block_means(truth, NULL, BENCH_BLOCK, &t);
+	if (result == GR_OK) {
+		size_t count = (size_t)t.width * (size_t)t.height;
 
-		memset(out + 3 * b, 0, 3 * sizeof *out);
-		for (size_t k = 0; k < BENCH_BLOCK * BENCH_BLOCK; k++)
-			for (size_t c = 0; c < 3; c++)
-				out[3 * b + c] += (double)first[3 * (k / BENCH_BLOCK * (size_t)image->width +
-								     k % BENCH_BLOCK) + c] /
-						  (BENCH_BLOCK * BENCH_BLOCK);
+		true_values = calloc(count, 3 * sizeof *true_values);
+		scratch = calloc(count, sizeof *scratch);
+		result = true_values && scratch ? GR_OK : GR_ERR_NOMEM;
+		for (size_t i = 0; result == GR_OK && i < 3 * count; i++)
+			true_values[i] = (double)t.data[i];
+		if (result == GR_OK)
+			result = stats_compare(f.data, true_values, NULL, count, 3, scratch, out);
 	}
-	return across * down;
+	free(true_values);
+	free(scratch);
+	image_finish(&f);
+	image_finish(&t);
+	return result < 0 ? result : GR_OK;
+}
+
+static int compare_shown_pictures(const struct image *found, const struct image *truth,
+				  const struct scene_tone *tone, struct bench_picture_error *out)
+{
+	const struct compare_params params = COMPARE_PARAMS;
+	struct image f = { 0 }, t = { 0 }, map = { 0 };
+	int result = bench_picture_show(found, tone, &f);
+
+	if (result == GR_OK)
+		result = bench_picture_show(truth, tone, &t);
+	if (result == GR_OK && compare_ssim(&f, &t, NULL, &out->ssim) != GR_OK)
+		out->ssim = NAN;
+	if (result == GR_OK)
+		result = compare_flip(&f, &t, params.pixels_per_degree, &map);
+	if (result == GR_OK) {
+		size_t count = (size_t)map.width * (size_t)map.height;
+
+		out->flip = 0;
+		for (size_t i = 0; i < count; i++)
+			out->flip += (double)map.data[i] / (double)count;
+	}
+	image_finish(&f);
+	image_finish(&t);
+	image_finish(&map);
+	return result;
 }
 
 int bench_picture_compare(const struct image *found, const struct image *truth,
 			  const struct scene_tone *tone, struct bench_picture_error *out)
 {
-	size_t most = (size_t)(truth->width / BENCH_BLOCK) * (size_t)(truth->height / BENCH_BLOCK);
-	double *blocks = NULL, *scratch = NULL;
-	float *means = NULL;
-	int result = GR_ERR_NOMEM;
+	int result;
 
 	*out = (struct bench_picture_error){ .ssim = NAN, .flip = NAN };
 	if (found->width != truth->width || found->height != truth->height ||
-	    found->channels != 3 || truth->channels != 3 || !most)
+	    found->channels != 3 || truth->channels != 3 || truth->width < BENCH_BLOCK ||
+	    truth->height < BENCH_BLOCK)
 		return GR_ERR_RANGE;
-	blocks = calloc(most, 6 * sizeof *blocks);
-	scratch = calloc(most, sizeof *scratch);
-	means = calloc(most, 3 * sizeof *means);
-	if (blocks && scratch && means) {
-		size_t count = block_means(found, blocks + 3 * most);
-
-		for (size_t i = 0; i < 3 * count; i++)
-			means[i] = (float)blocks[3 * most + i];
-		block_means(truth, blocks);
-		result = stats_compare(means, blocks, NULL, count, 3, scratch, &out->blocks);
-	}
-	free(blocks);
-	free(scratch);
-	free(means);
-	(void)tone;
-	return result < 0 ? result : GR_OK;
+	result = compare_blocks(found, truth, &out->blocks);
+	if (result == GR_OK)
+		result = compare_shown_pictures(found, truth, tone, out);
+	return result;
 }
