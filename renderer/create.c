@@ -1,6 +1,9 @@
 #include "renderer/renderer_private.h"
 
 #include "base/result.h"
+#include "renderer/gi/choose.h"
+#include "renderer/gi/surfel_store.h"
+#include "renderer/gi/surfels.h"
 #include "renderer/scene/environment.h"
 
 #include <stdlib.h>
@@ -23,15 +26,35 @@ static int check_params(const struct renderer_params *params, const struct targe
 	return GR_OK;
 }
 
+/* What surfels and probes need of the scene, once, and then on the GPU. */
+static int create_surfels(struct renderer *r, bool probes)
+{
+	const struct surfels_params params = {
+		.gathers = r->file->gi.gathers,
+		.probes = probes,
+		.lamps = r->shadow != NULL,
+	};
+	struct surfel_bake_params bake;
+	struct surfel_set *set = NULL;
+	int result;
+
+	surfel_bake_params_of(r->file, &bake);
+	result = surfels_load_or_bake(&set, r->scene, r->file, &bake);
+	if (result == GR_OK)
+		result = gi_surfels_create(&r->gi, set, &params);
+	surfel_set_destroy(&set);
+	return result;
+}
+
 /* Shadow, emissive and illumination stages, each only where the scene has use for it. */
 static int create_light(struct renderer *r, const struct emissive_patches *patches)
 {
-	bool gi = r->file->gi.method != SCENE_GI_NONE;
 	int lamp_layers = shadow_layers(r->file);
 	int layers = lamp_layers + emissive_layers(patches);
 	int result = GR_OK;
 
-	if (gi && layers > 0)
+	r->choice = gi_choose(r->file, r->scene, layers > 0);
+	if (r->choice.method == SCENE_GI_LPV)
 		result = rsm_create(&r->rsm, r->file->gi.rsm_pixels, layers, lamp_layers > 0,
 				    patches->count > 0);
 	if (result == GR_OK && lamp_layers > 0)
@@ -39,8 +62,11 @@ static int create_light(struct renderer *r, const struct emissive_patches *patch
 	if (result == GR_OK && patches->count > 0)
 		result = emissive_create(&r->emissive, patches, r->scene, r->mesh,
 					 r->file->shadow_pixels, r->rsm, lamp_layers);
-	if (result == GR_OK && r->rsm)
+	if (result == GR_OK && r->choice.method == SCENE_GI_LPV)
 		result = gi_lpv_create(&r->gi, r->scene, r->file);
+	if (result == GR_OK &&
+	    (r->choice.method == SCENE_GI_SURFELS || r->choice.method == SCENE_GI_PROBES))
+		result = create_surfels(r, r->choice.method == SCENE_GI_PROBES);
 	return result;
 }
 
@@ -79,7 +105,7 @@ static int create_pictures(struct renderer *r)
 
 static void log_environment(const struct renderer *r)
 {
-	enum scene_gi_method method = r->file->gi.method;
+	enum scene_gi_method method = r->choice.method;
 	char text[256];
 
 	if (!r->scene->environment)
@@ -110,11 +136,10 @@ static void log_stages(const struct renderer *r, const struct emissive_patches *
 	else
 		gr_info("stage emissive: none, no surface of the scene emits");
 	if (r->gi)
-		gr_info("stage gi: %s: %s", r->gi->ops->name, r->gi->ops->describe(r->gi));
+		gr_info("stage gi: %s, %s: %s", r->gi->ops->name, r->choice.why,
+			r->gi->ops->describe(r->gi));
 	else
-		gr_info("stage gi: none, %s",
-			r->file->gi.method == SCENE_GI_NONE ? "the scene file asks for none"
-							    : "there is no lamp and nothing emits");
+		gr_info("stage gi: none, %s", r->choice.why);
 	log_environment(r);
 	gr_info("stages gbuffer and shade: %d picture%s of %d x %d, drawn when the eye or the "
 		"light changes",

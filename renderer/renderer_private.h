@@ -3,6 +3,7 @@
 #define GROTTO_RENDERER_RENDERER_PRIVATE_H
 
 #include "base/log.h"
+#include "renderer/gi/choose.h"
 #include "renderer/gi/gi.h"
 #include "renderer/gl/program.h"
 #include "renderer/renderer.h"
@@ -37,6 +38,7 @@ struct renderer {
 	struct shadow_stage *shadow;     /* NULL: no lamps */
 	struct emissive_stage *emissive; /* NULL: nothing emits */
 	struct gi_method *gi;            /* NULL: none */
+	struct gi_choice choice;
 	struct backdrop backdrop;
 	struct tone_stage *tone;
 	struct timers *timers;

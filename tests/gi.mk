@@ -37,3 +37,10 @@ TESTS += tests/unit/test_plan
 tests_unit_test_plan_SOURCES = tests/unit/test_plan.c tests/unit/unit.h
 tests_unit_test_plan_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_plan_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm
+
+check_PROGRAMS += tests/accuracy/test_surfels_gl
+TESTS += tests/accuracy/test_surfels_gl
+tests_accuracy_test_surfels_gl_SOURCES = tests/accuracy/test_surfels_gl.c tests/unit/unit.h \
+	$(SURFEL_RIG_SOURCES)
+tests_accuracy_test_surfels_gl_CFLAGS = $(TEST_CFLAGS) $(CGLM_CFLAGS) $(EPOXY_CFLAGS)
+tests_accuracy_test_surfels_gl_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm

@@ -7,6 +7,7 @@ RENDERER_SOURCES += \
 	renderer/gi/link.c renderer/gi/link.h \
 	renderer/gi/lpv.c renderer/gi/lpv_check.c renderer/gi/lpv_private.h renderer/gi/lpv_splat.c renderer/gi/lpv_start.c \
 	renderer/gi/lpv_cpu.c renderer/gi/lpv_cpu.h renderer/gi/lpv_thesis.c \
+	renderer/gi/choose.c renderer/gi/choose.h \
 	renderer/gi/plan.c renderer/gi/plan.h renderer/gi/plan_error.c renderer/gi/plan_facts.c \
 	renderer/gi/sectors.c renderer/gi/sectors.h \
 	renderer/gi/surface.c renderer/gi/surface.h \
@@ -17,6 +18,8 @@ RENDERER_SOURCES += \
 	renderer/gi/surfel_store.c renderer/gi/surfel_store.h \
 	renderer/gi/surfel_random.h renderer/gi/surfel_reach.c renderer/gi/surfel_surface.c \
 	renderer/gi/surfel_grid.c renderer/gi/surfel_set.c renderer/gi/surfel_set.h \
+	renderer/gi/surfels.c renderer/gi/surfels.h renderer/gi/surfels_private.h \
+	renderer/gi/surfels_check.c renderer/gi/surfels_probes.c renderer/gi/surfels_share.c renderer/gi/surfels_upload.c \
 	renderer/gi/transfer.c renderer/gi/transfer.h
 
 SHADERS += \
@@ -25,4 +28,8 @@ SHADERS += \
 	renderer/shaders/lpv_splat_peak.comp renderer/shaders/lpv_splat_resolve.comp \
 	renderer/shaders/lpv_splat_sum.comp renderer/shaders/lpv_step.comp \
 	renderer/shaders/lpv_thesis_start.comp renderer/shaders/lpv_thesis_step.comp \
-	renderer/shaders/lpv_thesis_store.comp
+	renderer/shaders/lpv_thesis_store.comp \
+	renderer/shaders/gi_probes.glsl renderer/shaders/gi_surfels.glsl renderer/shaders/probe_gather.comp \
+	renderer/shaders/probe_grid.glsl renderer/shaders/surfel_block.glsl renderer/shaders/surfel_check.comp \
+	renderer/shaders/surfel_gather.comp renderer/shaders/surfel_light.comp renderer/shaders/surfel_pack.comp \
+	renderer/shaders/surfel_packed.glsl renderer/shaders/surfel_slice.glsl renderer/shaders/surfel_unpack.comp

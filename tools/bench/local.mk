@@ -4,6 +4,8 @@ LATTICE_ROOM_SOURCES = tools/bench/room.c tools/bench/room.h \
 LATTICE_BENCH_SOURCES = $(LATTICE_ROOM_SOURCES) tools/bench/lpv_bench.c tools/bench/lpv_bench.h
 SURFEL_BENCH_SOURCES = $(LATTICE_ROOM_SOURCES) tools/bench/surfel_cpu.c tools/bench/surfel_cpu.h
 
+SURFEL_RIG_SOURCES = $(LATTICE_BENCH_SOURCES) tools/bench/surfel_rig.c tools/bench/surfel_rig.h
+
 # Cost and error of the lattice; takes a minute, so not a test.
 # `grotto bench lattice` starts it.
 pkglibexec_PROGRAMS = tools/bench-lattice

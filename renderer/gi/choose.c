@@ -1,0 +1,25 @@
+#include "renderer/gi/choose.h"
+
+struct gi_choice gi_choose(const struct scene_file *file, const struct scene *scene, bool near)
+{
+	switch (file->gi.method) {
+	case SCENE_GI_NONE:
+		return (struct gi_choice){ SCENE_GI_NONE, "the scene file asks for none" };
+	case SCENE_GI_LPV:
+		if (!near)
+			return (struct gi_choice){ SCENE_GI_NONE, "there is no lamp and nothing emits" };
+		return (struct gi_choice){ SCENE_GI_LPV, "the scene file asks for it" };
+	case SCENE_GI_SURFELS:
+	case SCENE_GI_PROBES:
+		if (!near && !scene->environment)
+			return (struct gi_choice){ SCENE_GI_NONE, "nothing lights the scene" };
+		return (struct gi_choice){ file->gi.method, "the scene file asks for it" };
+	case SCENE_GI_AUTO:
+		break;
+	}
+	if (!near && !scene->environment)
+		return (struct gi_choice){ SCENE_GI_NONE, "nothing lights the scene" };
+	if (file->scattering_per_m > 0 && near)
+		return (struct gi_choice){ SCENE_GI_LPV, "the air scatters light" };
+	return (struct gi_choice){ SCENE_GI_SURFELS, "the scene stands still and its air is clear" };
+}

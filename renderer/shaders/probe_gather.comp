@@ -1,0 +1,41 @@
+#version 450 core
+// Light of the surfels on the probes, spherical harmonics of three bands: one
+// coefficient of one probe an invocation, its links in order.
+layout(local_size_x = 64) in;
+
+#include "probe_grid.glsl"
+
+layout(location = 0) uniform uvec2 counts;     // coefficients of all probes; links of each
+layout(location = 1) uniform float extinction; // log2 of what a metre lets through
+layout(binding = 8) uniform samplerBuffer radiosity;
+layout(binding = 9) uniform usamplerBuffer surfel_texels; // two a surfel
+layout(std430, binding = 9) readonly buffer Links { uint links[]; };
+layout(std430, binding = 10) readonly buffer Basis { float basis[]; }; // PROBE_SH a link
+layout(std430, binding = 11) readonly buffer Fixed { vec4 fixed_light[]; };
+layout(std430, binding = 12) writeonly buffer Light { vec4 light[]; };
+
+void main()
+{
+	uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+	uint at = group * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+
+	if (at >= counts.x)
+		return;
+	uint probe = at / uint(PROBE_SH), c = at % uint(PROBE_SH);
+	uvec3 size = uvec3(probes.size.xyz);
+	vec3 here = probes.origin.xyz +
+		    probes.origin.w * vec3(probe % size.x, probe / size.x % size.y, probe / (size.x * size.y));
+	vec3 sum = vec3(0.0);
+
+	for (uint k = 0u; k < counts.y; k++) {
+		int link = int(links[probe * counts.y + k]);
+		vec3 b = texelFetch(radiosity, link).rgb * basis[uint(PROBE_SH) * k + c];
+
+		if (extinction != 0.0)
+			b *= exp2(extinction *
+				  distance(here, uintBitsToFloat(texelFetch(surfel_texels, 2 * link).xyz)));
+		sum += b;
+	}
+	// radiance b/pi, each link 4 pi / links steradians
+	light[at] = vec4(fixed_light[at].rgb + sum * (4.0 / float(counts.y)), 0.0);
+}
