@@ -17,6 +17,7 @@ static const struct command {
 	{ "check", command_check, "check layout and scene files, report gaps between walls" },
 	{ "demo", command_demo, "run a whole cave on this machine, leave its pictures and figures" },
 	{ "key", command_key, "make a cluster key" },
+	{ "reference", command_reference, "path-trace what the renderer should show" },
 	{ "render", command_render, "draw one still of a scene" },
 	{ "status", command_status, "ask the running master how its room is" },
 };
@@ -27,7 +28,7 @@ static void print_help(FILE *out)
 {
 	fprintf(out, "usage: grotto COMMAND [ARGUMENT...]\n\n");
 	for (size_t i = 0; i < COMMAND_COUNT; i++)
-		fprintf(out, "  %-8s %s\n", commands[i].name, commands[i].summary);
+		fprintf(out, "  %-9s %s\n", commands[i].name, commands[i].summary);
 	fprintf(out, "\ngrotto COMMAND --help explains one; --version says which grotto this is.\n"
 		     "exit status: 0 done, 1 failed, 2 what was given is wrong\n");
 }

@@ -5,6 +5,7 @@ tools_libgtools_a_SOURCES = \
 	tools/children.c tools/children.h \
 	tools/cli.c tools/cli.h \
 	tools/programs.c tools/programs.h \
+	tools/progress.c tools/progress.h \
 	tools/report.c tools/report.h \
 	tools/room.c tools/room.h \
 	tools/say.c tools/say.h \
@@ -25,6 +26,10 @@ tools_grotto_SOURCES = \
 	tools/demo_run.c \
 	tools/demo_summary.c \
 	tools/key.c \
+	tools/reference.c tools/reference.h \
+	tools/reference_picture.c \
+	tools/reference_points.c \
+	tools/reference_view.c \
 	tools/render.c \
 	tools/status.c
 tools_grotto_CPPFLAGS = $(AM_CPPFLAGS) -DGROTTO_SBINDIR='"$(sbindir)"' \

@@ -12,7 +12,7 @@
 
 /* width * height * channels floats, interleaved. */
 struct image {
-	int width, height, channels; /* channels 1, 3 or 4 */
+	int width, height, channels; /* channels 1, 3 or 4; any number to be written with names */
 	float *data;
 };
 

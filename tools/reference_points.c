@@ -1,0 +1,208 @@
+/* Irradiance of `grotto reference` at points: of a CSV, or of the scene's surfels. */
+#include "tools/reference.h"
+
+#include "base/result.h"
+#include "renderer/gi/surfel_bake.h"
+#include "tools/say.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* More would be a mistake: 224 bytes each. */
+#define POINTS_MOST ((size_t)1 << 22)
+#define LINE_MOST 512
+
+struct points {
+	struct reference_point *at;
+	size_t count, size;
+};
+
+static struct reference_point *grow(struct points *points)
+{
+	if (points->count == points->size) {
+		size_t size = points->size ? 2 * points->size : 1024;
+		struct reference_point *at = realloc(points->at, size * sizeof *at);
+
+		if (!at)
+			return NULL;
+		points->at = at;
+		points->size = size;
+	}
+	memset(&points->at[points->count], 0, sizeof *points->at);
+	return &points->at[points->count++];
+}
+
+/* Six numbers, and nothing after them but further columns. false: not a point. */
+static bool parse_point(const char *line, struct reference_point *out)
+{
+	float length = 0;
+	char after = ',';
+	int n = sscanf(line, " %f , %f , %f , %f , %f , %f %c", &out->position[0],
+		       &out->position[1], &out->position[2], &out->normal[0], &out->normal[1],
+		       &out->normal[2], &after);
+
+	if (n < 6 || after != ',')
+		return false;
+	for (int i = 0; i < 3; i++) {
+		if (!isfinite(out->position[i]) || !isfinite(out->normal[i]))
+			return false;
+		length += out->normal[i] * out->normal[i];
+	}
+	length = sqrtf(length);
+	if (!isfinite(length) || !(length > 1e-6f))
+		return false;
+	for (int i = 0; i < 3; i++)
+		out->normal[i] /= length;
+	return true;
+}
+
+static int read_lines(FILE *file, const char *path, struct points *points)
+{
+	char line[LINE_MOST];
+
+	for (int number = 1; fgets(line, sizeof line, file); number++) {
+		struct reference_point point = { 0 }, *place;
+		bool whole = strchr(line, '\n') || feof(file);
+
+		/* the first line may name the columns */
+		if (line[0] == '#' || line[strspn(line, " \t\r\n")] == '\0')
+			continue;
+		if (!whole || !parse_point(line, &point)) {
+			if (whole && number == 1)
+				continue;
+			fprintf(stderr, "%s:%d: not a point: x,y,z,nx,ny,nz are wanted, finite, the "
+					"normal not zero\n",
+				path, number);
+			return GR_ERR_CONFIG;
+		}
+		if (points->count >= POINTS_MOST) {
+			fprintf(stderr, "%s: more than %zu points\n", path, POINTS_MOST);
+			return GR_ERR_CONFIG;
+		}
+		place = grow(points);
+		if (!place)
+			return GR_ERR_NOMEM;
+		*place = point;
+	}
+	if (points->count == 0) {
+		fprintf(stderr, "%s: has no points\n", path);
+		return GR_ERR_CONFIG;
+	}
+	return ferror(file) ? GR_ERR_IO : GR_OK;
+}
+
+static int read_points(const char *path, struct points *points)
+{
+	FILE *file = fopen(path, "r");
+	int result;
+
+	if (!file) {
+		fprintf(stderr, "%s: cannot be opened: %s\n", path, strerror(errno));
+		return GR_ERR_CONFIG;
+	}
+	result = read_lines(file, path, points);
+	fclose(file);
+	return result;
+}
+
+static bool show_bake(void *ctx, const char *stage, double done, double seconds_left)
+{
+	struct reference_run *run = ctx;
+
+	progress_show(&run->progress, done, seconds_left, stage);
+	run->stopped = run->stopped || progress_asked_to_end();
+	return !run->stopped;
+}
+
+/* The places alone: what surfels are baked for beside is as little as may be. */
+static int place_surfels(struct reference_run *run, struct points *points)
+{
+	struct surfel_bake_params params;
+	struct surfel_set *set = NULL;
+	struct gr_diag diag = { 0 };
+	int result;
+
+	surfel_bake_params_of(run->file, &params);
+	params.links = 16;
+	params.taps = 1;
+	params.probes = 0;
+	params.threads = run->options->threads;
+	params.progress = show_bake;
+	params.ctx = run;
+	progress_start(&run->progress, "surfels");
+	result = surfel_bake(&set, run->scene, run->file, &params, &diag);
+	progress_end(&run->progress);
+	say_diag(&diag);
+	gr_diag_finish(&diag);
+	for (size_t i = 0; result == GR_OK && i < set->count; i++) {
+		struct reference_point *point = grow(points);
+
+		if (!point) {
+			result = GR_ERR_NOMEM;
+			break;
+		}
+		memcpy(point->position, set->surfels[i].position, sizeof point->position);
+		surfel_normal_unpack(set->surfels[i].normal, point->normal);
+	}
+	surfel_set_destroy(&set);
+	return result;
+}
+
+static int write_points(const char *path, const struct points *points)
+{
+	FILE *file = fopen(path, "w");
+	bool good = file != NULL;
+
+	if (file) {
+		fprintf(file, "x,y,z,nx,ny,nz,total_r,total_g,total_b,indirect_r,indirect_g,indirect_b,"
+			      "total_stderr_r,total_stderr_g,total_stderr_b,"
+			      "indirect_stderr_r,indirect_stderr_g,indirect_stderr_b\n");
+		for (size_t i = 0; i < points->count; i++) {
+			const struct reference_point *p = &points->at[i];
+			const double *columns[] = { p->total, p->indirect, p->total_error,
+						    p->indirect_error };
+
+			fprintf(file, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g", (double)p->position[0],
+				(double)p->position[1], (double)p->position[2],
+				(double)p->normal[0], (double)p->normal[1], (double)p->normal[2]);
+			for (int k = 0; k < 4; k++)
+				fprintf(file, ",%.7g,%.7g,%.7g", columns[k][0], columns[k][1],
+					columns[k][2]);
+			fputc('\n', file);
+		}
+		good = !ferror(file);
+		good = fclose(file) == 0 && good;
+	}
+	if (!good)
+		fprintf(stderr, "%s: cannot be written: %s\n", path, strerror(errno));
+	return good ? GR_OK : GR_ERR_IO;
+}
+
+int reference_points(struct reference_run *run)
+{
+	const struct reference_options *o = run->options;
+	struct points points = { 0 };
+	uint64_t nonfinite = 0;
+	int result = o->points ? read_points(o->points, &points) : place_surfels(run, &points);
+
+	if (result == GR_OK) {
+		progress_start(&run->progress, "points");
+		result = reference_irradiance(run->reference, &run->params, points.at,
+					      points.count, &nonfinite);
+		progress_end(&run->progress);
+	}
+	if (result == GR_NOTHING)
+		fprintf(stderr, "grotto reference: ended early; %s has what there is\n", o->points_out);
+	if (result == GR_OK || (result == GR_NOTHING && points.count > 0))
+		result = write_points(o->points_out, &points);
+	if (result == GR_OK)
+		printf("%s: %zu points\n", o->points_out, points.count);
+	if (nonfinite)
+		fprintf(stderr, "warning: %llu samples were not finite and are left out\n",
+			(unsigned long long)nonfinite);
+	free(points.at);
+	return result;
+}
