@@ -91,15 +91,14 @@ static int write_files(struct reference_run *run, const struct reference_film *f
 }
 
 static void print_figures(const struct reference_run *run, const struct reference_film *film,
-			  int before, double seconds)
+			  double seconds)
 {
-	double paths = (double)(film->samples - before) * film->width * film->height;
 	char time[32];
 
-	printf("%s: %dx%d, %d samples a pixel, standard error %.3f %%, %s, %.2f million paths/s\n",
+	printf("%s: %dx%d, %d samples a pixel, standard error %.3f %%, %s, %.2f million rays/s\n",
 	       run->options->out ? run->options->out : run->options->png, film->width, film->height,
 	       film->samples, 100 * reference_film_error(film),
-	       progress_time(seconds, time, sizeof time), seconds > 0 ? paths / seconds * 1e-6 : 0);
+	       progress_time(seconds, time, sizeof time), seconds > 0 ? (double)reference_rays(run->reference) / seconds * 1e-6 : 0);
 	if (run->stopped)
 		printf("ended early%s\n", run->options->resume ? "; the same command goes on" : "");
 	if (film->nonfinite)
@@ -113,13 +112,12 @@ int reference_picture(struct reference_run *run)
 	struct reference_film film = { 0 };
 	struct reference_view view;
 	int64_t start;
-	int result = reference_choose_view(run, &view), before;
+	int result = reference_choose_view(run, &view);
 
 	if (result == GR_OK)
 		result = load_film(o->resume, &film);
 	if (result != GR_OK)
 		goto out;
-	before = film.samples;
 	start = gr_clock_now(&gr_clock_monotonic);
 	progress_start(&run->progress, "picture");
 	result = reference_render(run->reference, &view, &run->params, &film);
@@ -136,7 +134,7 @@ int reference_picture(struct reference_run *run)
 	else if (result == GR_OK || result == GR_NOTHING)
 		result = write_files(run, &film);
 	if (result == GR_OK)
-		print_figures(run, &film, before,
+		print_figures(run, &film,
 			      (double)(gr_clock_now(&gr_clock_monotonic) - start) * 1e-9);
 out:
 	reference_film_finish(&film);

@@ -23,7 +23,7 @@ struct pass {
 	uint64_t first_set;
 	size_t sets;
 	double (*results)[6]; /* a set of an item: sums of total and indirect */
-	atomic_uint_fast64_t nonfinite;
+	atomic_uint_fast64_t nonfinite, rays;
 	/* progress */
 	int first_samples, samples; /* at the start of this run, and wanted */
 	int64_t start_ns;
@@ -51,7 +51,7 @@ double estimate_relative_error(const struct estimate_sums *sums)
 		mean += sums->total[i] / sums->samples;
 	}
 	if (!(mean > 0.0))
-		return 0.0;
+		return -1.0;
 	return sqrt(variance / (3.0 * (double)sums->items)) / (mean / (3.0 * (double)sums->items));
 }
 
@@ -62,12 +62,14 @@ static void take_set(struct pass *pass, size_t piece)
 	struct sampler sampler = sampler_start(pass->params->seed, item,
 					       pass->first_set + piece / pass->sums->items);
 	double sum[6] = { 0 };
+	unsigned rays = 0;
 
 	for (uint32_t i = 0; i < SAMPLER_SET; i++) {
 		struct path_light light;
 
 		sampler.index = i;
 		light = pass->sample(pass->ctx, pass->scene, item, &sampler);
+		rays += light.rays;
 		if (!v3_finite(light.total) || !v3_finite(light.indirect)) {
 			atomic_fetch_add(&pass->nonfinite, 1);
 			continue;
@@ -79,6 +81,7 @@ static void take_set(struct pass *pass, size_t piece)
 		sum[4] += (double)light.indirect.y;
 		sum[5] += (double)light.indirect.z;
 	}
+	atomic_fetch_add_explicit(&pass->rays, rays, memory_order_relaxed);
 	for (int c = 0; c < 6; c++)
 		pass->results[piece][c] = sum[c];
 }
@@ -183,6 +186,7 @@ int estimate_run(struct estimate_sums *sums, const struct path_scene *scene,
 		if (result == GR_OK && !tell(&pass, 0.0) && sums->samples < pass.samples)
 			result = GR_NOTHING;
 	}
+	sums->rays = atomic_load(&pass.rays);
 	free(pass.results);
 	return result;
 }

@@ -14,6 +14,7 @@ struct estimate_sums {
 	int samples;
 	double *total, *squares, *indirect, *indirect_squares;
 	uint64_t nonfinite;
+	uint64_t rays; /* of the last run, those of an unfinished pass included */
 };
 
 /* One sample of an item. Any thread. */
@@ -28,7 +29,7 @@ int estimate_run(struct estimate_sums *sums, const struct path_scene *scene,
 		 const struct reference_params *params, estimate_sample sample, const void *ctx);
 /* Standard error of the mean of one value; 0 before two sets. */
 double estimate_error(double total, double squares, int samples);
-/* rms standard error over the mean, of all; negative before two sets. */
+/* rms standard error over the mean, of all; negative: not known, with fewer than two sets or all black. */
 double estimate_relative_error(const struct estimate_sums *sums);
 
 #endif

@@ -68,16 +68,17 @@ static struct v3 scatter(const struct vertex *at, struct v3 light, float *out_pd
 	return bsdf_eval(&at->bsdf, at->viewer, light, out_pdf);
 }
 
-static bool open_along(const struct path *path, struct v3 direction, float metres)
+static bool open_along(struct path *path, struct v3 direction, float metres)
 {
 	float from[3], along[3];
 
 	v3_put(path->at.start, from);
 	v3_put(direction, along);
+	path->light.rays++;
 	return !rays_blocked_along(path->scene->world.rays, from, along, metres);
 }
 
-static bool open_to(const struct path *path, struct v3 target)
+static bool open_to(struct path *path, struct v3 target)
 {
 	return open_along(path, v3_sub(target, path->at.start), 1.0f);
 }
@@ -335,6 +336,7 @@ static bool travel(struct path *path, struct v3 direction, float pdf)
 
 	v3_put(path->at.start, from);
 	v3_put(direction, along);
+	path->light.rays++;
 	met = rays_nearest(scene->world.rays, from, along, INFINITY, &hit);
 	distance = met ? hit.distance : INFINITY;
 	if (scene->medium.extinction > 0.0f)
@@ -427,6 +429,7 @@ static bool leave_eye(struct path *path, struct v3 direction)
 
 	v3_put(path->at.start, from);
 	v3_put(direction, along);
+	path->light.rays++;
 	met = rays_nearest_drawn(scene->world.rays, from, along, INFINITY, &hit);
 	if (scene->medium.extinction > 0.0f)
 		pair_of(path, PAIR_WAY, u);

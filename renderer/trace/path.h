@@ -28,6 +28,7 @@ struct path_scene {
 /* total, indirect: as in reference.h. */
 struct path_light {
 	struct v3 total, indirect;
+	unsigned rays; /* traced for it */
 };
 
 /* Radiance that arrives at the eye along a unit direction. Pair 0 of the sampler is the caller's. */

@@ -48,6 +48,11 @@ void reference_destroy(struct reference **reference)
 	*reference = NULL;
 }
 
+uint64_t reference_rays(const struct reference *reference)
+{
+	return reference->rays;
+}
+
 static bool params_ok(const struct reference_params *params)
 {
 	return params->samples > 0 && params->samples <= 1 << 30 && params->until_error >= 0.0 &&
@@ -139,6 +144,7 @@ int reference_render(struct reference *reference, const struct reference_view *v
 		.nonfinite = film->nonfinite,
 	};
 	result = estimate_run(&sums, &reference->scene, params, sample_pixel, view);
+	reference->rays = sums.rays;
 	film->samples = sums.samples;
 	film->nonfinite = sums.nonfinite;
 	return result;
@@ -203,6 +209,7 @@ int reference_irradiance(struct reference *reference, const struct reference_par
 	sums.indirect_squares = values + 9 * count;
 	prepare(reference, params);
 	result = estimate_run(&sums, &reference->scene, params, sample_point, points);
+	reference->rays = sums.rays;
 	if (result == GR_OK || result == GR_NOTHING)
 		fill_points(&sums, points);
 	if (out_nonfinite)

@@ -65,6 +65,8 @@ struct reference;
 int reference_create(struct reference **out, const struct scene *scene,
 		     const struct scene_file *file, const struct render_frame *frame);
 void reference_destroy(struct reference **reference);
+/* Rays that the last call of reference_render or reference_irradiance traced. */
+uint64_t reference_rays(const struct reference *reference);
 
 /* A pinhole that looks at a picture: rays through its pixels, box filter of one pixel. */
 struct reference_view {
@@ -102,7 +104,7 @@ struct reference_film {
  */
 int reference_render(struct reference *reference, const struct reference_view *view,
 		     const struct reference_params *params, struct reference_film *film);
-/* rms standard error over the mean of the radiance; negative before two sets. */
+/* rms standard error over the mean of the radiance; negative: not known (fewer than two sets, all black). */
 double reference_film_error(const struct reference_film *film);
 /* To pictures of 3 channels; each may be NULL. error: standard error of the mean, 0 before two sets. */
 int reference_film_images(const struct reference_film *film, struct image *radiance,

@@ -15,6 +15,7 @@ struct reference {
 	struct scene_lamp lamps[SCENE_MAX_LAMPS];
 	struct render_frame frame;
 	uint8_t hash[32]; /* of all that light depends on but the parameters */
+	uint64_t rays;    /* of the last call */
 };
 
 /* BLAKE2b-256 of geometry, materials, textures, environment, lamps and medium. */
