@@ -6,7 +6,7 @@ static struct v3 cosine_direction(const float u[2])
 {
 	float r = sqrtf(u[0]), phi = 2.0f * TRACE_PI * u[1];
 
-	return (struct v3){ r * cosf(phi), r * sinf(phi), sqrtf(fmaxf(1.0f - u[0], 0.0f)) };
+	return (struct v3){ r * cosf(phi), r * sinf(phi), sqrtf(larger_of(1.0f - u[0], 0.0f)) };
 }
 
 void bsdf_init(struct bsdf *out, const struct scene *scene, const struct scene_material *material,
@@ -51,7 +51,7 @@ static struct v3 phong_eval(const struct bsdf *b, struct v3 v, struct v3 l, floa
 		float length = v3_length(sum);
 		struct v3 h = length > 0.0f ? v3_scale(sum, 1.0f / length)
 					    : (struct v3){ 0.0f, 0.0f, 1.0f };
-		float c = fmaxf(h.z, 0.0f), toward = v3_dot(v, h);
+		float c = larger_of(h.z, 0.0f), toward = v3_dot(v, h);
 		float power = powf(c, b->shininess);
 
 		f = v3_ahead(f, b->specular, (b->shininess + 8.0f) / (8.0f * TRACE_PI) * power);
@@ -67,7 +67,7 @@ static struct v3 phong_eval(const struct bsdf *b, struct v3 v, struct v3 l, floa
 static struct v3 phong_half(const struct bsdf *b, const float u[2])
 {
 	float c = powf(1.0f - u[0], 1.0f / (b->shininess + 2.0f));
-	float s = sqrtf(fmaxf(1.0f - c * c, 0.0f)), phi = 2.0f * TRACE_PI * u[1];
+	float s = sqrtf(larger_of(1.0f - c * c, 0.0f)), phi = 2.0f * TRACE_PI * u[1];
 
 	return (struct v3){ s * cosf(phi), s * sinf(phi), c };
 }
@@ -112,10 +112,10 @@ static struct v3 ggx_half(float alpha, struct v3 v, const float u[2])
 		f.v = v3_cross(s, f.u);
 	}
 	x = r * cosf(phi);
-	y = (1.0f - mix) * sqrtf(fmaxf(1.0f - x * x, 0.0f)) + mix * r * sinf(phi);
-	struct v3 h = v3_from_local(&f, (struct v3){ x, y, sqrtf(fmaxf(1.0f - x * x - y * y, 0.0f)) });
+	y = (1.0f - mix) * sqrtf(larger_of(1.0f - x * x, 0.0f)) + mix * r * sinf(phi);
+	struct v3 h = v3_from_local(&f, (struct v3){ x, y, sqrtf(larger_of(1.0f - x * x - y * y, 0.0f)) });
 
-	return v3_unit((struct v3){ alpha * h.x, alpha * h.y, fmaxf(h.z, 1e-7f) });
+	return v3_unit((struct v3){ alpha * h.x, alpha * h.y, larger_of(h.z, 1e-7f) });
 }
 
 /* --- a measured table --- */

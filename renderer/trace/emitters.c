@@ -82,6 +82,25 @@ static int build_alias(struct emitters *out, const double *power, double total)
 	return GR_OK;
 }
 
+static void fill(struct emitter *e, const struct world *world, unsigned triangle)
+{
+	const struct scene_material *m = world_material(world, triangle);
+	struct v3 b = world_corner(world, triangle, 1), c = world_corner(world, triangle, 2);
+	float scale;
+
+	e->triangle = triangle;
+	e->two_sided = m->two_sided;
+	e->textured = m->emission_image >= 0;
+	e->radiance = v3_of(m->emission);
+	e->corner = world_corner(world, triangle, 0);
+	e->ab = v3_sub(b, e->corner);
+	e->ac = v3_sub(c, e->corner);
+	e->lift = world_lift(e->corner, b, c);
+	/* small edges would leave float's range when multiplied */
+	scale = 1.0f / larger_of(v3_widest(e->ab), v3_widest(e->ac));
+	e->normal = v3_unit(v3_cross(v3_scale(e->ab, scale), v3_scale(e->ac, scale)));
+}
+
 static int measure(struct emitters *out, const struct world *world, double *power)
 {
 	size_t triangles = world->scene->index_count / 3;
@@ -95,7 +114,7 @@ static int measure(struct emitters *out, const struct world *world, double *powe
 		power[n] = area_of(world, (unsigned)t) * mean_emission(world, (unsigned)t);
 		if (!(power[n] > 0.0) || !isfinite(power[n]))
 			continue;
-		out->emitters[n].triangle = (unsigned)t;
+		fill(&out->emitters[n], world, (unsigned)t);
 		total += power[n++];
 	}
 	out->count = n;
@@ -155,29 +174,21 @@ bool emitters_sample(const struct emitters *emitters, const struct world *world,
 		     float choose, const float u[2], struct emitter_light *out)
 {
 	const struct emitter *e = draw(emitters, choose);
-	struct v3 a = world_corner(world, e->triangle, 0);
-	struct v3 b = world_corner(world, e->triangle, 1);
-	struct v3 c = world_corner(world, e->triangle, 2);
-	struct v3 ab = v3_sub(b, a), ac = v3_sub(c, a), n, point, to;
-	float at[2], cosine, lift, scale;
+	struct v3 point, to;
+	float at[2], cosine;
 
 	triangle_point(u, at);
-	point = v3_ahead(v3_ahead(v3_scale(a, 1.0f - at[0] - at[1]), b, at[0]), c, at[1]);
+	point = v3_ahead(v3_ahead(e->corner, e->ab, at[0]), e->ac, at[1]);
 	to = v3_sub(point, from);
 	out->distance = v3_length(to);
-	/* small edges would leave float's range when multiplied */
-	scale = 1.0f / fmaxf(v3_length(ab), v3_length(ac));
-	n = v3_cross(v3_scale(ab, scale), v3_scale(ac, scale));
-	n = v3_unit(n);
 	if (!(out->distance > 0.0f))
 		return false;
 	out->direction = v3_scale(to, 1.0f / out->distance);
-	cosine = -v3_dot(n, out->direction);
-	if (cosine == 0.0f || (cosine < 0.0f && !world_material(world, e->triangle)->two_sided))
+	cosine = -v3_dot(e->normal, out->direction);
+	if (cosine == 0.0f || (cosine < 0.0f && !e->two_sided))
 		return false;
-	lift = world_lift(a, b, c);
-	out->target = v3_ahead(point, n, cosine > 0.0f ? lift : -lift);
-	out->radiance = world_emission(world, e->triangle, at[0], at[1]);
+	out->target = v3_ahead(point, e->normal, cosine > 0.0f ? e->lift : -e->lift);
+	out->radiance = e->textured ? world_emission(world, e->triangle, at[0], at[1]) : e->radiance;
 	out->pdf = emitters_pdf(emitters, e->triangle, out->distance, fabsf(cosine));
 	return out->pdf > 0.0f && isfinite(out->pdf);
 }

@@ -13,6 +13,11 @@ struct emitter {
 	unsigned triangle;
 	float share;    /* alias table: how much of this slot is its own */
 	unsigned alias; /* whose the rest is */
+	bool two_sided, textured;
+	struct v3 corner, ab, ac; /* a corner and the edges from it */
+	struct v3 normal;         /* unit, the front */
+	struct v3 radiance;       /* W/(m^2 sr), without a texture */
+	float lift;               /* as world_lift */
 };
 
 struct emitters {

@@ -67,7 +67,7 @@ static void take_set(struct pass *pass, size_t piece)
 	for (uint32_t i = 0; i < SAMPLER_SET; i++) {
 		struct path_light light;
 
-		sampler.index = i;
+		sampler_point(&sampler, i);
 		light = pass->sample(pass->ctx, pass->scene, item, &sampler);
 		rays += light.rays;
 		if (!v3_finite(light.total) || !v3_finite(light.indirect)) {

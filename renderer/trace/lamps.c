@@ -14,7 +14,7 @@ static bool shines(const struct frame_lamp *lamp, enum scene_lamp_kind kind)
 static void fill(struct trace_lamp *out, const struct scene_lamp *file,
 		 const struct frame_lamp *lamp, bool soft)
 {
-	float penumbra = cosf(fmaxf(0.5f * file->cone_rad - file->penumbra_rad, 0.0f));
+	float penumbra = cosf(larger_of(0.5f * file->cone_rad - file->penumbra_rad, 0.0f));
 
 	memset(out, 0, sizeof *out);
 	out->kind = file->kind;
@@ -65,7 +65,7 @@ static float cone(const struct trace_lamp *lamp, struct v3 to)
 		return 1.0f;
 	if (lamp->widen == 0.0f)
 		return c > lamp->umbra ? 1.0f : 0.0f;
-	return fminf(fmaxf((c - lamp->umbra) * lamp->widen, 0.0f), 1.0f);
+	return smaller_of(larger_of((c - lamp->umbra) * lamp->widen, 0.0f), 1.0f);
 }
 
 /* 1 - cosine of the angle that a sphere's half covers; 2: from inside. */
@@ -84,7 +84,7 @@ static struct v3 cap_direction(struct v3 axis, float cap, const float u[2])
 {
 	struct v3_frame f = v3_frame_of(axis);
 	float down = u[0] * cap, phi = 2.0f * TRACE_PI * u[1];
-	float sine = sqrtf(fmaxf(down * (2.0f - down), 0.0f));
+	float sine = sqrtf(larger_of(down * (2.0f - down), 0.0f));
 
 	return v3_from_local(&f, (struct v3){ sine * cosf(phi), sine * sinf(phi), 1.0f - down });
 }
@@ -121,7 +121,7 @@ struct lamp_light lamp_light(const struct trace_lamp *lamp, struct v3 from, cons
 		float along = metres * v3_dot(out.direction, axis);
 		float inside = lamp->radius * lamp->radius - (metres * metres - along * along);
 
-		out.distance = cap >= 2.0f ? 0.0f : along - sqrtf(fmaxf(inside, 0.0f));
+		out.distance = cap >= 2.0f ? 0.0f : along - sqrtf(larger_of(inside, 0.0f));
 	}
 	return out;
 }

@@ -43,7 +43,7 @@ static inline float medium_exit(const struct medium *m, struct v3 p, struct v3 d
 
 	for (int i = 0; i < 3; i++)
 		if (fabsf(d[i]) > 1e-12f)
-			t = fminf(t, (d[i] > 0.0f ? high[i] : low[i]) / d[i]);
+			t = smaller_of(t, (d[i] > 0.0f ? high[i] : low[i]) / d[i]);
 	return t > 0.0f && isfinite(t) ? t : 0.0f;
 }
 

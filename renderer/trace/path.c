@@ -366,7 +366,7 @@ static bool turn(struct path *path, struct v3 *out_direction, float *out_pdf)
 
 	pair_of(path, PAIR_SURFACE, u);
 	if (path->at.in_medium) {
-		float z = 1.0f - 2.0f * u[0], r = sqrtf(fmaxf(1.0f - z * z, 0.0f));
+		float z = 1.0f - 2.0f * u[0], r = sqrtf(larger_of(1.0f - z * z, 0.0f));
 		float phi = 2.0f * TRACE_PI * u[1];
 
 		*out_direction = (struct v3){ r * cosf(phi), r * sinf(phi), z };
@@ -384,7 +384,7 @@ static bool turn(struct path *path, struct v3 *out_direction, float *out_pdf)
 
 static bool survives(struct path *path)
 {
-	float keep = fminf(v3_most(path->throughput), ROULETTE_MOST), u[2];
+	float keep = smaller_of(v3_most(path->throughput), ROULETTE_MOST), u[2];
 
 	if (path->depth < ROULETTE_FROM)
 		return true;

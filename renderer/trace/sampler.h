@@ -18,8 +18,8 @@
 #define SAMPLER_SET (1 << SAMPLER_SET_BITS)
 
 struct sampler {
-	uint32_t key;   /* of the set */
-	uint32_t index; /* of the point in the set */
+	uint64_t key;     /* of the set */
+	uint32_t reversed; /* index of the point in the set, its bits in reverse */
 };
 
 /* splitmix64's finaliser (Steele et al. 2014; Stafford's variant 13). */
@@ -30,13 +30,26 @@ static inline uint64_t sampler_mix(uint64_t x)
 	return x ^ (x >> 31);
 }
 
+#define SAMPLER_STEP UINT64_C(0x9e3779b97f4a7c15)
+
 static inline struct sampler sampler_start(uint64_t seed, uint64_t item, uint64_t set)
 {
-	uint64_t key = sampler_mix(seed + UINT64_C(0x9e3779b97f4a7c15));
+	uint64_t key = sampler_mix(seed + SAMPLER_STEP);
 
-	key = sampler_mix(key ^ (item + UINT64_C(0x9e3779b97f4a7c15)));
-	key = sampler_mix(key ^ (set + UINT64_C(0x9e3779b97f4a7c15)));
-	return (struct sampler){ (uint32_t)(key >> 32), 0 };
+	key = sampler_mix(key ^ (item + SAMPLER_STEP));
+	return (struct sampler){ .key = sampler_mix(key ^ (set + SAMPLER_STEP)) };
+}
+
+/* The four bits of a number below 16 in reverse. */
+static inline uint32_t sampler_reverse_index(uint32_t x)
+{
+	return (uint32_t)(UINT64_C(0xf7b3d591e6a2c480) >> (4 * x)) & 15u;
+}
+
+/* index: below SAMPLER_SET. */
+static inline void sampler_point(struct sampler *s, uint32_t index)
+{
+	s->reversed = sampler_reverse_index(index);
 }
 
 static inline uint32_t sampler_reverse(uint32_t x)
@@ -45,15 +58,6 @@ static inline uint32_t sampler_reverse(uint32_t x)
 	x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
 	x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
 	return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
-}
-
-static inline uint32_t sampler_hash(uint32_t key, uint32_t dimension)
-{
-	uint32_t x = key ^ (dimension * 0x9e3779b9u);
-
-	x = (x ^ (x >> 16)) * 0x21f0aaadu;
-	x = (x ^ (x >> 15)) * 0xd35a2d97u;
-	return x ^ (x >> 15);
 }
 
 /* A nested uniform scramble of bits given in reverse: each bit depends on those below it. */
@@ -67,15 +71,11 @@ static inline uint32_t sampler_permute(uint32_t x, uint32_t seed)
 	return x;
 }
 
-/* The second Sobol dimension, for the low bits of an index; reversed. */
+/* The second Sobol coordinate of an index below 16, its bits in reverse. */
 static inline uint32_t sampler_second(uint32_t index)
 {
-	static const uint32_t columns[SAMPLER_SET_BITS] = { 0x1, 0x3, 0x5, 0xf };
-	uint32_t x = 0;
-
-	for (int bit = 0; bit < SAMPLER_SET_BITS; bit++)
-		x ^= columns[bit] & (0u - ((index >> bit) & 1u));
-	return x;
+	return (0x1u & (0u - (index & 1u))) ^ (0x3u & (0u - (index >> 1 & 1u))) ^
+	       (0x5u & (0u - (index >> 2 & 1u))) ^ (0xfu & (0u - (index >> 3)));
 }
 
 static inline float sampler_float(uint32_t reversed)
@@ -87,15 +87,14 @@ static inline float sampler_float(uint32_t reversed)
 /* Two numbers in [0, 1) of pair `pair`. */
 static inline void sampler_pair(const struct sampler *s, uint32_t pair, float out[2])
 {
-	uint32_t key = sampler_hash(s->key, pair);
+	uint64_t seeds = sampler_mix(s->key + (pair + 1) * SAMPLER_STEP);
 	/* shuffled as Owen scrambling shuffles: aligned blocks stay blocks */
-	uint32_t top = s->index << (32 - SAMPLER_SET_BITS);
-	uint32_t index = sampler_reverse(sampler_permute(sampler_reverse(top), key)) >>
-			 (32 - SAMPLER_SET_BITS);
+	uint32_t index = sampler_reverse_index(
+		sampler_permute(s->reversed, (uint32_t)(seeds >> 16)) & 15u);
 
-	/* a Sobol point's reversed first coordinate is the index itself */
-	out[0] = sampler_float(sampler_permute(index, sampler_hash(key, 1)));
-	out[1] = sampler_float(sampler_permute(sampler_second(index), sampler_hash(key, 2)));
+	/* the first Sobol coordinate, its bits in reverse, is the index itself */
+	out[0] = sampler_float(sampler_permute(index, (uint32_t)(seeds >> 32)));
+	out[1] = sampler_float(sampler_permute(sampler_second(index), (uint32_t)seeds));
 }
 
 #endif

@@ -77,9 +77,25 @@ static inline struct v3 v3_unit(struct v3 a)
 	return v3_scale(a, 1.0f / v3_length(a));
 }
 
+/* Without the call that fmaxf is; NaN gives the second. */
+static inline float larger_of(float a, float b)
+{
+	return a > b ? a : b;
+}
+
+static inline float smaller_of(float a, float b)
+{
+	return a < b ? a : b;
+}
+
 static inline float v3_most(struct v3 a)
 {
-	return fmaxf(a.x, fmaxf(a.y, a.z));
+	return larger_of(a.x, larger_of(a.y, a.z));
+}
+
+static inline float v3_widest(struct v3 a)
+{
+	return larger_of(fabsf(a.x), larger_of(fabsf(a.y), fabsf(a.z)));
 }
 
 static inline float v3_mean(struct v3 a)

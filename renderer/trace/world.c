@@ -2,15 +2,8 @@
 
 #include "base/result.h"
 
-#include <float.h>
 #include <stdlib.h>
 #include <string.h>
-
-/*
- * A barycentric sum of three corners is off by up to about 3 rounding errors of
- * the largest coordinate, and Embree's distance by as many; the rest is room.
- */
-#define LIFT_ROUNDINGS 24.0f
 
 int world_init(struct world *out, const struct scene *scene, int threads)
 {
@@ -42,16 +35,6 @@ void world_finish(struct world *world)
 	rays_destroy(&world->rays);
 	free(world->material);
 	world->material = NULL;
-}
-
-static float widest(struct v3 a)
-{
-	return fmaxf(fabsf(a.x), fmaxf(fabsf(a.y), fabsf(a.z)));
-}
-
-float world_lift(struct v3 a, struct v3 b, struct v3 c)
-{
-	return LIFT_ROUNDINGS * FLT_EPSILON * fmaxf(widest(a), fmaxf(widest(b), widest(c)));
 }
 
 const struct scene_material *world_material(const struct world *world, unsigned triangle)

@@ -11,6 +11,14 @@
 #include "renderer/trace/rays.h"
 #include "renderer/trace/vector.h"
 
+#include <float.h>
+
+/*
+ * A barycentric sum of three corners is off by up to about 3 rounding errors of
+ * the largest coordinate, and Embree's distance by as many; the rest is room.
+ */
+#define WORLD_LIFT_ROUNDINGS 24.0f
+
 struct world {
 	const struct scene *scene;
 	struct rays *rays;
@@ -49,6 +57,10 @@ const struct scene_material *world_material(const struct world *world, unsigned 
  * and Binder 2019, "A Fast and Robust Method for Avoiding Self-Intersection"),
  * so that it suits scenes of any size. corners: the triangle's.
  */
-float world_lift(struct v3 a, struct v3 b, struct v3 c);
+static inline float world_lift(struct v3 a, struct v3 b, struct v3 c)
+{
+	return WORLD_LIFT_ROUNDINGS * FLT_EPSILON *
+	       larger_of(v3_widest(a), larger_of(v3_widest(b), v3_widest(c)));
+}
 
 #endif
