@@ -134,6 +134,7 @@ static bool update_all(struct surfels *s, bool changed, bool lamps)
 		surfels_gather(s, all);
 	s->since_change += s->params.gathers;
 	s->stats.steps = s->params.gathers;
+	surfels_smooth(s);
 	surfels_check_submit(s, all);
 	surfels_probes_gather(s);
 	return true;
@@ -156,8 +157,10 @@ static bool update_slice(struct surfels *s, bool changed, bool lamps)
 		return false;
 	/* the last frame's gathers have written over this node's slice */
 	surfels_share_restore(s);
-	if (arrived)
+	if (arrived) {
+		surfels_smooth(s);
 		surfels_probes_gather(s);
+	}
 	if (!works)
 		return true;
 	if (changed || !s->lit)
@@ -196,10 +199,13 @@ static int update(struct gi_method *method, const struct render_frame *frame,
 		surfels_check_submit(s, (struct surfels_run){ 0, (uint32_t)s->count });
 		if (s->share.count > 1 || s->share.other_slices)
 			surfels_share_recut(s);
+		surfels_smooth(s);
 		surfels_probes_gather(s);
 	} else {
-		if (s->share.other_slices)
+		if (s->share.other_slices) {
 			surfels_share_recut(s);
+			surfels_smooth(s);
+		}
 		ran = s->share.count > 1 ? update_slice(s, changed, light->lamps)
 					 : update_all(s, changed, light->lamps);
 	}
@@ -219,8 +225,7 @@ static void bind(const struct gi_method *method)
 	}
 	glBindBufferBase(GL_UNIFORM_BUFFER, SURFELS_BINDING_BLOCK, s->block);
 	glBindTextureUnit(SURFELS_UNIT_SURFELS, s->texels.texture);
-	glBindTextureUnit(SURFELS_UNIT_LIGHT,
-			  s->share.count > 1 ? s->shown.texture : s->found.texture);
+	glBindTextureUnit(SURFELS_UNIT_LIGHT, s->shown.texture);
 	glBindTextureUnit(SURFELS_UNIT_FIRST, s->first.texture);
 	glBindTextureUnit(SURFELS_UNIT_MEMBERS, s->members.texture);
 	glBindTextureUnit(SURFELS_UNIT_KEYS, s->keys.texture);
@@ -273,6 +278,7 @@ static void destroy(struct gi_method *method)
 	surfels_probes_finish(s);
 	surfels_share_finish(s);
 	surfels_check_finish(s);
+	surfels_smooth_finish(s);
 	surfels_upload_finish(s);
 	program_destroy(&s->light);
 	program_destroy(&s->dark_light);
@@ -368,6 +374,8 @@ int gi_surfels_create(struct gi_method **out, const struct surfel_set *set,
 	result = surfels_upload(s, set);
 	if (result == GR_OK)
 		result = create_programs(s);
+	if (result == GR_OK)
+		result = surfels_smooth_init(s, set);
 	if (result == GR_OK)
 		result = surfels_check_init(s);
 	if (result == GR_OK)

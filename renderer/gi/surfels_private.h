@@ -103,15 +103,16 @@ struct surfels {
 	char description[320];
 	size_t bytes; /* on the GPU */
 
-	unsigned light, dark_light, gather, gather_medium, check; /* programs; dark_light: without lamps */
+	unsigned light, dark_light, gather, gather_medium, smooth, check; /* programs; dark_light: without lamps */
 	unsigned block, checks;
 	struct surfels_buffer texels;	       /* struct surfel */
 	struct surfels_buffer links, taps;     /* in blocks of SURFELS_GROUP surfels */
 	uint32_t links_part, taps_part;	       /* surfels whose links and taps a shader sees at once */
 	struct surfels_buffer albedo, emissive, other; /* RGBA32F as all that follow */
 	struct surfels_buffer direct;	       /* of the lamps, W/m^2 */
-	struct surfels_buffer found;	       /* indirect + other: this node's newest */
-	struct surfels_buffer shown;	       /* the same as shared; shading reads one of the two */
+	struct surfels_buffer found;	       /* indirect + other: the newest */
+	struct surfels_buffer shown;	       /* the same smoothed, as shading reads it */
+	struct surfels_buffer around_first, around; /* what is summed up for it */
 	struct surfels_buffer radiosity[2];    /* [current] is the newest; one dark surfel at the end */
 	int current;
 	struct surfels_buffer first, members, keys; /* the grid */
@@ -146,6 +147,11 @@ void surfels_gather(struct surfels *s, struct surfels_run run);
 void surfels_barrier(void);
 /* Runs the program in use over a run; its uniform 0 is the run. */
 void surfels_dispatch(unsigned program, struct surfels_run run);
+
+/* surfels_smooth.c: from `found` to `shown`. */
+int surfels_smooth_init(struct surfels *s, const struct surfel_set *set);
+void surfels_smooth_finish(struct surfels *s);
+void surfels_smooth(struct surfels *s);
 
 /* surfels_check.c: looks at the newest light, reads what is there of earlier looks. */
 int surfels_check_init(struct surfels *s);

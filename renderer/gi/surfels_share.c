@@ -127,7 +127,6 @@ static void pack(struct surfels *s, struct surfels_run run, unsigned words, unsi
 static void unpack(struct surfels *s, unsigned index)
 {
 	bind_words(s, s->share.used);
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SURFELS_BINDING_EMISSIVE, s->shown.buffer);
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SURFELS_BINDING_DIRECT, s->radiosity[0].buffer);
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SURFELS_BINDING_RADIOSITY, s->radiosity[1].buffer);
 	surfels_barrier();

@@ -1,5 +1,5 @@
 #version 450 core
-// A slice's words back into light, where gathers and shading read it.
+// A slice's words back into light, where gathers and smoothing read it.
 layout(local_size_x = 64) in;
 
 #include "surfel_slice.glsl"
@@ -7,7 +7,6 @@ layout(local_size_x = 64) in;
 
 layout(location = 1) uniform uint place; // of the slice among the scales
 layout(std430, binding = 8) readonly buffer Words { uvec2 words[]; };
-layout(std430, binding = 11) writeonly buffer Shown { vec4 shown[]; };
 layout(std430, binding = 12) writeonly buffer Found { vec4 found[]; };
 layout(std430, binding = 13) writeonly buffer RadiosityA { vec4 radiosity_a[]; };
 layout(std430, binding = 14) writeonly buffer RadiosityB { vec4 radiosity_b[]; };
@@ -23,7 +22,6 @@ void main()
 	vec4 b = vec4(unpacked_colour(word.x, scale.x), 0.0);
 	vec4 e = vec4(unpacked_colour(word.y, scale.y), 0.0);
 
-	shown[i] = e;
 	found[i] = e;
 	radiosity_a[i] = b;
 	radiosity_b[i] = b;
