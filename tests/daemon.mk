@@ -37,9 +37,9 @@ tests_loopback_stranger_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
 tests_loopback_stranger_LDADD = $(PROTOCOL_LIBS)
 
 dist_check_SCRIPTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh \
-	tests/loopback/group.sh
+	tests/loopback/group.sh tests/loopback/share_survives.sh
 TESTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh \
-	tests/loopback/group.sh
+	tests/loopback/group.sh tests/loopback/share_survives.sh
 EXTRA_DIST += tests/loopback/room.sh tests/loopback/room.cave.in tests/loopback/cell.scene
 
 check_PROGRAMS += tests/unit/test_trackers

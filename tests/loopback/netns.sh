@@ -2,7 +2,8 @@
 # Master and four nodes in network namespaces of their own on a bridge that
 # this test makes: with 5 % of all datagrams lost at every ingress each frame
 # still swaps on every node with the same state; a node that is cut off is
-# left out, and is back after it is connected again. Needs CAP_NET_ADMIN,
+# left out, and is back after it is connected again; and a light that the nodes
+# share out ends with the same bits on all, whatever was lost of it. Needs CAP_NET_ADMIN,
 # iproute2 and nftables; touches nothing but its own namespaces.
 . "${srcdir:-.}/tests/loopback/lib.sh"
 id=gr$$
@@ -85,12 +86,13 @@ rates = { evict_frames = 3; };
 trackers = ( { name = "visitor"; kind = "sim"; sim = { walk_radius_m = 0.5; }; } );
 EOF
 
+scene=$srcdir/tests/data/loop.scene
 # start NS NAME PROGRAM OPTION...: in the background; its pid is left in $pid
 start() {
 	ns=$1 name=$2 program=$3
 	shift 3
 	ip netns exec "$id-$ns" "$builddir/daemon/$program" --layout "$work/a.cave" \
-		--scene "$srcdir/tests/data/loop.scene" --report "$work/$name.json" "$@" \
+		--scene "$scene" --report "$work/$name.json" "$@" \
 		>"$work/$name.log" 2>&1 &
 	pid=$!
 	started="$started $pid"
@@ -177,6 +179,32 @@ for n in n1 n2 n3 n4; do
 	jq -e '.mismatches == 0' "$work/$n.json" >/dev/null || fail "partition: $(cat_reports)"
 done
 echo "partition: $(jq -c '{frames, joined, evicted, late, missed: [.nodes[].missed]}' "$work/master.json")"
+
+# A shared light under loss: a lamp that circles, then rest.
+rm -f "$work"/*.json
+mkdir -p "$work/a/b" "$work/scenes"
+cp "$srcdir/scenes/cornell-spot.gltf" "$work/scenes/"
+scene=$work/a/b/shared.scene
+cp "$srcdir/tests/data/shared.scene" "$scene"
+lose 5 || skip "no nftables at ingress"
+start m master grotto-master --frame-clock --wait-all --deadline-ms 60000
+master=$pid
+for n in 1 2 3 4; do
+	start $n n$n grotto-node --node n$n --once
+done
+await 120 "150 frames of a shared light under loss" holds '.frame > 150 and .share.nodes == 4'
+"$builddir/tests/loopback/ask" "$work/control" set lamp sun off >/dev/null
+before=$(status | jq .frame)
+await 60 "the light to rest" holds ".frame > $before + 80"
+kill -TERM "$master"
+# shellcheck disable=SC2086
+await 60 "the end" gone $started
+started=
+jq -es '([.[].light_hash] | unique | length == 1) and all(.mismatches == 0 and .share.refused == 0) and
+	(map(.share.asked) | add) > 0' "$work"/n[1-4].json >/dev/null ||
+	fail "shared light under loss: $(jq -c '[.node, .light_hash, .share]' "$work"/n[1-4].json)"
+echo "shared light, 5 % loss: $(lost) datagrams lost; master $(jq -c '.share' "$work/master.json"); \
+nodes $(jq -cs '{received: map(.share.received) | add, late: map(.share.late) | add, lost: map(.share.lost) | add}' "$work"/n[1-4].json)"
 
 [ $failed -eq 0 ] && echo "ok"
 exit $failed
