@@ -3,7 +3,6 @@
 #include "base/clock.h"
 #include "base/result.h"
 
-#include <float.h>
 #include <stdlib.h>
 
 /* Rounds in which points that hear no surfel become some. */
@@ -60,15 +59,11 @@ static void begin_stage(struct bake *bake, const char *name, double until)
 
 static void set_spacing(struct bake *bake, float spacing)
 {
-	float far = 0;
-
-	for (int i = 0; i < 3; i++)
-		far = fmaxf(far, fmaxf(fabsf(bake->min[i]), fabsf(bake->max[i])));
 	bake->spacing = spacing;
 	bake->radius = BAKE_RADIUS * spacing;
 	bake->lift = BAKE_LIFT * spacing;
 	/* well above the rounding of a hit's place, well below what is to be seen */
-	bake->offset = fmaxf(1e-4f * spacing, 16 * FLT_EPSILON * far);
+	bake->offset = fmaxf(1e-4f * spacing, world_lift(v3_of(bake->min), v3_of(bake->max), v3_all(0)));
 	bake->set->spacing_m = spacing;
 	bake->set->radius_m = bake->radius;
 }
@@ -195,9 +190,7 @@ static int bake_all(struct bake *bake)
 	result = bake_surface(bake);
 	if (result != GR_OK || bake->piece_count == 0)
 		return result;
-	result = rays_create(&bake->rays, bake->scene);
-	if (result == GR_OK)
-		result = surface_lookup_create(&bake->lookup, bake->scene);
+	result = world_init(&bake->world, bake->scene, bake->threads);
 	if (result == GR_OK)
 		result = place_all(bake);
 	if (result == GR_OK)
@@ -230,8 +223,7 @@ static int make_empty(struct bake *bake)
 
 static void finish(struct bake *bake)
 {
-	rays_destroy(&bake->rays);
-	surface_lookup_destroy(&bake->lookup);
+	world_finish(&bake->world);
 	drop_points(bake);
 	bake_cells_finish(&bake->surfel_cells);
 	free(bake->normals);

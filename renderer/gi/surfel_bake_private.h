@@ -5,11 +5,9 @@
 #ifndef GROTTO_RENDERER_GI_SURFEL_BAKE_PRIVATE_H
 #define GROTTO_RENDERER_GI_SURFEL_BAKE_PRIVATE_H
 
-#include "renderer/gi/surface.h"
 #include "renderer/gi/surfel_bake.h"
 #include "renderer/trace/crew.h"
-#include "renderer/trace/rays.h"
-#include "renderer/trace/vector.h"
+#include "renderer/trace/world.h"
 
 /* Points a surfel's patch has about. */
 #define BAKE_POINTS_EACH 64
@@ -45,8 +43,7 @@ struct bake {
 	struct gr_diag *diag;
 	int threads;
 
-	struct rays *rays;
-	struct surface_lookup *lookup;
+	struct world world;
 	size_t triangle_count;
 	struct v3 *normals;      /* of each triangle's front; 0 0 0: not a triangle */
 	float *areas;            /* of each triangle, m^2 */
@@ -88,8 +85,6 @@ static inline struct v3 bake_normal(const struct bake *bake, uint32_t side)
 
 /* surfel_surface.c: triangles, sides, pieces, bounds. */
 int bake_surface(struct bake *bake);
-/* surfel_material.c: diffuse reflectance at a point, as links need it. */
-void bake_albedo(const struct bake *bake, const struct bake_point *point, float out[3]);
 /* surfel_points.c: fills points for about `surfels` surfels of this spacing. */
 int bake_points(struct bake *bake);
 /*
@@ -113,6 +108,8 @@ uint32_t bake_patch_point(const struct bake *bake, size_t i, float share);
  */
 int bake_reach(struct bake *bake);
 int bake_unheard(struct bake *bake, uint32_t **out, size_t *out_count);
+/* surfel_material.c: diffuse reflectance at a point, as links need it. */
+void bake_albedo(const struct bake *bake, const struct bake_point *point, float out[3]);
 /* Where a ray's way ended, and the fixed light that it brings by way of mirrors. */
 struct bake_end {
 	uint32_t surfel; /* SURFEL_NONE: brings no reflected light */
@@ -120,17 +117,18 @@ struct bake_end {
 	float light[3];  /* W/(m^2 sr) */
 };
 /*
- * surfel_links.c. Follows a ray until it ends on a diffuse surface, is absorbed
- * or leaves the scene; key: of its random numbers.
+ * Follows a ray until it ends on a diffuse surface, is absorbed or leaves the
+ * scene; key: of its random numbers.
  */
 void bake_follow(const struct bake *bake, struct v3 from, struct v3 way, uint64_t key,
 		 struct bake_end *out);
-int bake_links(struct bake *bake);
 /* A direction about a normal, by the cosine. */
 struct v3 bake_cosine(struct v3 normal, const float u[2]);
 /* The surfel whose patch holds a point of a side; SURFEL_NONE: of none. */
 uint32_t bake_surfel_at(const struct bake *bake, struct v3 position, uint32_t side);
-/* surfel_fixed.c */
+/* surfel_links.c */
+int bake_links(struct bake *bake);
+/* surfel_fixed.c; after the links, which bring what mirrors show. */
 int bake_fixed(struct bake *bake);
 /* surfel_probes.c */
 int bake_probes(struct bake *bake);

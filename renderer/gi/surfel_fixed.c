@@ -2,14 +2,145 @@
 #include "renderer/gi/surfel_bake_private.h"
 
 #include "base/result.h"
+#include "renderer/gi/surfel_random.h"
+#include "renderer/scene/environment.h"
+#include "renderer/trace/path.h"
 
 #include <stdlib.h>
 
+/* Points of a patch for it; each has so many samples that all are about as many as links. */
+#define POINTS_EACH 16
+
+struct fixed {
+	struct bake *bake;
+	struct scene dark;        /* the scene without what surrounds it */
+	struct path_scene emissive;
+	int sets;                 /* of SAMPLER_SET samples a point */
+};
+
+static struct v3 point_start(const struct bake *bake, const struct bake_point *p)
+{
+	return v3_ahead(p->position, bake_normal(bake, p->side), bake->offset);
+}
+
+/* Mean over the patch of what the emissive surfaces send straight. */
+static void light_emissive(const struct fixed *f, size_t i)
+{
+	const struct bake *bake = f->bake;
+	double sum[3] = { 0 };
+
+	for (int k = 0; k < POINTS_EACH; k++) {
+		uint32_t point = bake_patch_point(bake, i, ((float)k + 0.5f) / POINTS_EACH);
+		const struct bake_point *p = &bake->points[point];
+
+		for (int s = 0; s < f->sets; s++) {
+			struct sampler sampler = sampler_start(bake->params.seed,
+							       i * POINTS_EACH + (size_t)k,
+							       (uint64_t)s);
+
+			for (sampler.index = 0; sampler.index < SAMPLER_SET; sampler.index++) {
+				float e[3];
+
+				v3_put(path_irradiance(&f->emissive, &sampler, p->position,
+						       bake_normal(bake, p->side)).total, e);
+				for (int c = 0; c < 3; c++)
+					sum[c] += (double)e[c];
+			}
+		}
+	}
+	for (int c = 0; c < 3; c++)
+		bake->set->fixed_emissive[i][c] = (float)(sum[c] / (POINTS_EACH * f->sets * SAMPLER_SET));
+}
+
+static bool is_open(const struct bake *bake, struct v3 from, const float way[3])
+{
+	float at[3];
+
+	v3_put(from, at);
+	return !rays_blocked_along(bake->world.rays, at, way, INFINITY);
+}
+
+static float power_weight(float a, float b)
+{
+	return a * a / (a * a + b * b);
+}
+
+/*
+ * The environment, by its own density and by the cosine, weighed by the power
+ * heuristic (Veach 1997): a sun is small, a sky is not.
+ */
+static void light_environment(const struct bake *bake, size_t i)
+{
+	const struct environment *environment = bake->scene->environment;
+	uint64_t key = random_start(bake->params.seed ^ UINT64_C(0x736b79), i);
+	uint32_t count = bake->set->links_each;
+	double sum[3] = { 0 };
+
+	for (uint32_t j = 0; j < count; j++) {
+		float u[3], v[3], way[3], radiance[3], weight;
+		const struct bake_point *p;
+		struct v3 n, from;
+
+		sobol_point(key, j, u);
+		sobol_point(~key, j, v);
+		p = &bake->points[bake_patch_point(bake, i, u[2])];
+		n = bake_normal(bake, p->side);
+		from = point_start(bake, p);
+		float pdf = environment_sample(environment, (double)v[0], (double)v[1], way, radiance);
+		float cosine = v3_dot(v3_of(way), n);
+		if (cosine > 0 && is_open(bake, from, way)) {
+			weight = power_weight(pdf, cosine / TRACE_PI) * cosine / pdf;
+			for (int c = 0; c < 3; c++)
+				sum[c] += (double)(weight * radiance[c]);
+		}
+		v3_put(bake_cosine(n, u), way);
+		cosine = v3_dot(v3_of(way), n);
+		environment_radiance(environment, way, radiance);
+		if (cosine > 0 && radiance[0] + radiance[1] + radiance[2] > 0 &&
+		    is_open(bake, from, way)) {
+			weight = power_weight(cosine / TRACE_PI, environment_pdf(environment, way)) *
+				 TRACE_PI;
+			for (int c = 0; c < 3; c++)
+				sum[c] += (double)(weight * radiance[c]);
+		}
+	}
+	for (int c = 0; c < 3; c++)
+		bake->set->fixed_other[i][c] += (float)(sum[c] / count);
+}
+
+static void light_all(void *ctx, size_t begin, size_t end, int thread)
+{
+	struct fixed *f = ctx;
+
+	(void)thread;
+	for (size_t i = begin; i < end; i++) {
+		if (f->emissive.emitters.count > 0)
+			light_emissive(f, i);
+		if (f->bake->scene->environment)
+			light_environment(f->bake, i);
+	}
+}
+
 int bake_fixed(struct bake *bake)
 {
+	struct fixed f = { .bake = bake, .dark = *bake->scene };
 	struct surfel_set *set = bake->set;
+	int result;
 
 	set->fixed_emissive = calloc(set->count + 1, sizeof *set->fixed_emissive);
-	set->fixed_other = calloc(set->count + 1, sizeof *set->fixed_other);
-	return set->fixed_emissive && set->fixed_other ? GR_OK : GR_ERR_NOMEM;
+	if (!set->fixed_emissive)
+		return GR_ERR_NOMEM;
+	f.dark.environment = NULL;
+	f.emissive.world = bake->world;
+	f.emissive.world.scene = &f.dark;
+	f.sets = (bake->params.links + POINTS_EACH * SAMPLER_SET - 1) / (POINTS_EACH * SAMPLER_SET);
+	result = emitters_init(&f.emissive.emitters, &f.emissive.world);
+	if (result == GR_OK && f.emissive.emitters.count + (bake->scene->environment != NULL) > 0)
+		result = bake_run(bake, set->count, 4, light_all, &f);
+	if (f.emissive.emitters.count > 0)
+		set->rays += set->count * (size_t)(POINTS_EACH * f.sets * SAMPLER_SET) * 2;
+	if (bake->scene->environment)
+		set->rays += set->count * set->links_each * 2;
+	emitters_finish(&f.emissive.emitters);
+	return result;
 }

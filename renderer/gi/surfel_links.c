@@ -84,33 +84,11 @@ struct v3 bake_cosine(struct v3 normal, const float u[2])
 						  sqrtf(fmaxf(1 - u[0], 0)) });
 }
 
-void bake_follow(const struct bake *bake, struct v3 from, struct v3 way, uint64_t key,
-		 struct bake_end *out)
-{
-	float at[3], to[3];
-	struct ray_hit hit;
-	uint32_t side;
-
-	(void)key;
-	*out = (struct bake_end){ .surfel = SURFEL_NONE };
-	v3_put(from, at);
-	v3_put(way, to);
-	if (!rays_nearest(bake->rays, at, to, INFINITY, &hit))
-		return;
-	side = 2 * hit.triangle;
-	if (v3_dot(v3_of(hit.normal), way) > 0) {
-		out->back = !bake->two_sided[hit.triangle];
-		if (out->back)
-			return;
-		side++;
-	}
-	out->surfel = bake_surfel_at(bake, v3_ahead(from, way, hit.distance), side);
-}
-
 static void link_all(void *ctx, size_t begin, size_t end, int thread)
 {
 	struct bake *bake = ctx;
 	struct surfel_set *set = bake->set;
+	const float share = TRACE_PI / (float)set->links_each;
 
 	(void)thread;
 	for (size_t i = begin; i < end; i++) {
@@ -128,6 +106,8 @@ static void link_all(void *ctx, size_t begin, size_t end, int thread)
 			bake_follow(bake, v3_ahead(p->position, n, bake->offset), bake_cosine(n, u),
 				    random_mix(key + j), &found);
 			set->links[i * set->links_each + j] = found.surfel;
+			for (int c = 0; c < 3; c++)
+				set->fixed_other[i][c] += share * found.light[c];
 		}
 	}
 }
@@ -138,7 +118,8 @@ int bake_links(struct bake *bake)
 
 	set->links_each = (uint32_t)bake->params.links;
 	set->links = malloc((set->count * set->links_each + 1) * sizeof *set->links);
-	if (!set->links)
+	set->fixed_other = calloc(set->count + 1, sizeof *set->fixed_other);
+	if (!set->links || !set->fixed_other)
 		return GR_ERR_NOMEM;
 	set->rays += set->count * set->links_each;
 	return bake_run(bake, set->count, 8, link_all, bake);

@@ -30,7 +30,7 @@ static bool sees(const struct bake *bake, const struct bake_point *a, const stru
 
 	v3_put(v3_ahead(a->position, bake_normal(bake, a->side), a->lift), from);
 	v3_put(v3_ahead(b->position, bake_normal(bake, b->side), b->lift), to);
-	return !rays_blocked(bake->rays, from, to);
+	return !rays_blocked(bake->world.rays, from, to);
 }
 
 static bool same_surface(const struct bake *bake, const struct bake_point *a,

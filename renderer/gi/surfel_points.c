@@ -110,7 +110,7 @@ static void find_lifts(void *ctx, size_t begin, size_t end, int thread)
 		v3_put(v3_ahead(p->position, n, bake->offset), from);
 		v3_put(n, to);
 		p->lift = bake->lift;
-		if (rays_nearest(bake->rays, from, to, 2 * bake->lift, &hit))
+		if (rays_nearest(bake->world.rays, from, to, 2 * bake->lift, &hit))
 			p->lift = fmaxf(0.5f * hit.distance, bake->offset);
 	}
 }

@@ -3,6 +3,7 @@
 
 #include "base/result.h"
 #include "renderer/gi/surfel_random.h"
+#include "renderer/scene/environment.h"
 
 #include <stdlib.h>
 
@@ -112,7 +113,7 @@ static void look_around(const struct bake *bake, size_t i)
 			double d = (double)most;
 
 			v3_put(octahedral(x / SURFEL_PROBE_SIDE, y / SURFEL_PROBE_SIDE), way);
-			if (rays_nearest(bake->rays, from, way, most, &hit))
+			if (rays_nearest(bake->world.rays, from, way, most, &hit))
 				d = (double)hit.distance;
 			sum += d / (DISTANCE_RAYS * DISTANCE_RAYS);
 			square += d * d / (DISTANCE_RAYS * DISTANCE_RAYS);
@@ -136,6 +137,37 @@ static void harmonics(const float d[3], float out[SURFEL_SH])
 	out[8] = 0.546274215f * (d[0] * d[0] - d[1] * d[1]);
 }
 
+static void add_harmonics(float fixed[SURFEL_SH][3], const float way[3], float share,
+			  const float radiance[3])
+{
+	float sh[SURFEL_SH];
+
+	harmonics(way, sh);
+	for (int j = 0; j < SURFEL_SH; j++)
+		for (int c = 0; c < 3; c++)
+			fixed[j][c] += share * sh[j] * radiance[c];
+}
+
+/* The environment, by its own density: a sun falls between links. */
+static void see_environment(const struct bake *bake, size_t i)
+{
+	struct surfel_probes *probes = &bake->set->probes;
+	uint64_t key = random_start(bake->params.seed ^ UINT64_C(0x736b7970), i);
+	float from[3];
+
+	v3_put(probe_position(probes, i), from);
+	for (uint32_t k = 0; k < probes->links_each; k++) {
+		float u[3], way[3], radiance[3];
+
+		sobol_point(key, k, u);
+		float pdf = environment_sample(bake->scene->environment, (double)u[0], (double)u[1],
+					       way, radiance);
+		if (!rays_blocked_along(bake->world.rays, from, way, INFINITY))
+			add_harmonics(probes->fixed[i], way, 1 / (pdf * (float)probes->links_each),
+				      radiance);
+	}
+}
+
 static void link_probe(const struct bake *bake, size_t i)
 {
 	struct surfel_probes *probes = &bake->set->probes;
@@ -146,17 +178,15 @@ static void link_probe(const struct bake *bake, size_t i)
 
 	for (uint32_t k = 0; k < probes->links_each; k++) {
 		struct bake_end end;
-		float sh[SURFEL_SH];
 
 		bake_follow(bake, from, v3_of(probes->directions[k]), random_mix(key + k), &end);
 		probes->links[i * probes->links_each + k] = end.surfel;
 		backs += end.back;
-		harmonics(probes->directions[k], sh);
-		for (int j = 0; j < SURFEL_SH; j++)
-			for (int c = 0; c < 3; c++)
-				probes->fixed[i][j][c] += share * sh[j] * end.light[c];
+		add_harmonics(probes->fixed[i], probes->directions[k], share, end.light);
 	}
 	probes->alive[i] = (float)backs <= BACKS_MOST * (float)probes->links_each;
+	if (bake->scene->environment)
+		see_environment(bake, i);
 	look_around(bake, i);
 }
 

@@ -50,7 +50,7 @@ static float look(const struct bake *bake, const struct bake_point *p, struct v3
 		left = (most - seen) / slope;
 		v3_put(from, at);
 		v3_put(d, to);
-		if (!rays_nearest(bake->rays, at, to, left, &hit))
+		if (!rays_nearest(bake->world.rays, at, to, left, &hit))
 			return most;
 		facing = v3_of(hit.normal);
 		if (v3_dot(facing, d) > 0)
