@@ -33,7 +33,7 @@
 #define SURFEL_MOST ((size_t)1 << 17)       /* surfels of a set */
 #define SURFEL_LINKS_MOST ((size_t)1 << 28) /* links of all surfels, or of all probes */
 /* Spacing 0: such that the scene's sides would hold about this many (surfel_bake.c). */
-#define SURFEL_USUAL 5000
+#define SURFEL_USUAL 6000
 
 struct surfel_bake_params {
 	float spacing_m; /* least distance between surfels; 0: from the scene's area */
