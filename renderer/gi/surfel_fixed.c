@@ -6,6 +6,7 @@
 #include "renderer/scene/environment.h"
 #include "renderer/trace/path.h"
 
+#include <stdatomic.h>
 #include <stdlib.h>
 
 /* Points of a patch for it; each has so many samples that all are about as many as links. */
@@ -16,6 +17,7 @@ struct fixed {
 	struct scene dark;        /* the scene without what surrounds it */
 	struct path_scene emissive;
 	int sets;                 /* of SAMPLER_SET samples a point */
+	atomic_size_t rays;
 };
 
 static struct v3 point_start(const struct bake *bake, const struct bake_point *p)
@@ -24,10 +26,11 @@ static struct v3 point_start(const struct bake *bake, const struct bake_point *p
 }
 
 /* Mean over the patch of what the emissive surfaces send straight. */
-static void light_emissive(const struct fixed *f, size_t i)
+static void light_emissive(struct fixed *f, size_t i)
 {
 	const struct bake *bake = f->bake;
 	double sum[3] = { 0 };
+	size_t rays = 0;
 
 	for (int k = 0; k < POINTS_EACH; k++) {
 		uint32_t point = bake_patch_point(bake, i, ((float)k + 0.5f) / POINTS_EACH);
@@ -38,11 +41,15 @@ static void light_emissive(const struct fixed *f, size_t i)
 							       i * POINTS_EACH + (size_t)k,
 							       (uint64_t)s);
 
-			for (sampler.index = 0; sampler.index < SAMPLER_SET; sampler.index++) {
+			for (uint32_t j = 0; j < SAMPLER_SET; j++) {
+				struct path_light light;
 				float e[3];
 
-				v3_put(path_irradiance(&f->emissive, &sampler, p->position,
-						       bake_normal(bake, p->side)).total, e);
+				sampler_point(&sampler, j);
+				light = path_irradiance(&f->emissive, &sampler, p->position,
+							bake_normal(bake, p->side));
+				rays += light.rays;
+				v3_put(light.total, e);
 				for (int c = 0; c < 3; c++)
 					sum[c] += (double)e[c];
 			}
@@ -50,6 +57,7 @@ static void light_emissive(const struct fixed *f, size_t i)
 	}
 	for (int c = 0; c < 3; c++)
 		bake->set->fixed_emissive[i][c] = (float)(sum[c] / (POINTS_EACH * f->sets * SAMPLER_SET));
+	atomic_fetch_add(&f->rays, rays);
 }
 
 static bool is_open(const struct bake *bake, struct v3 from, const float way[3])
@@ -137,8 +145,7 @@ int bake_fixed(struct bake *bake)
 	result = emitters_init(&f.emissive.emitters, &f.emissive.world);
 	if (result == GR_OK && f.emissive.emitters.count + (bake->scene->environment != NULL) > 0)
 		result = bake_run(bake, set->count, 4, light_all, &f);
-	if (f.emissive.emitters.count > 0)
-		set->rays += set->count * (size_t)(POINTS_EACH * f.sets * SAMPLER_SET) * 2;
+	set->rays += atomic_load(&f.rays);
 	if (bake->scene->environment)
 		set->rays += set->count * set->links_each * 2;
 	emitters_finish(&f.emissive.emitters);

@@ -114,7 +114,7 @@ static void add_light(const struct bake *bake, const struct ray_hit *hit, struct
 void bake_follow(const struct bake *bake, struct v3 from, struct v3 way, uint64_t key,
 		 struct bake_end *out)
 {
-	struct sampler sampler = { .key = (uint32_t)(key >> 32) };
+	struct sampler sampler = { .key = key };
 
 	*out = (struct bake_end){ .surfel = SURFEL_NONE };
 	for (uint32_t bounces = 0; bounces <= MIRRORS_MOST; bounces++) {
