@@ -5,6 +5,7 @@
 #include "renderer/gi/surfel_bake.h"
 #include "tools/say.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -71,7 +72,7 @@ static int read_lines(FILE *file, const char *path, struct points *points)
 		if (line[0] == '#' || line[strspn(line, " \t\r\n")] == '\0')
 			continue;
 		if (!whole || !parse_point(line, &point)) {
-			if (whole && number == 1)
+			if (whole && number == 1 && isalpha((unsigned char)line[0]))
 				continue;
 			fprintf(stderr, "%s:%d: not a point: x,y,z,nx,ny,nz are wanted, finite, the "
 					"normal not zero\n",

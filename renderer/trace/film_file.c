@@ -136,6 +136,8 @@ static int read_head(const struct input *in, struct gr_reader *r, struct referen
 
 	if (!start || memcmp(start, magic, sizeof magic) != 0)
 		return refuse(in, GR_ERR_FORMAT, "no film of grotto reference");
+	if (!r->ok)
+		return refuse(in, GR_ERR_FORMAT, "cut short within its first bytes");
 	if (version != VERSION)
 		return refuse(in, GR_ERR_VERSION, "a film of another version of grotto");
 	size[0] = gr_read_u32(r);

@@ -6,6 +6,7 @@
 #define GROTTO_TESTS_CLOSED_H
 
 #include "base/result.h"
+#include "renderer/scene/environment.h"
 #include "renderer/trace/reference.h"
 #include "tests/accuracy/cornell.h"
 #include "tests/unit/shared.h"
@@ -78,9 +79,31 @@ static inline void closed_start(struct closed *c, const struct quad *quads, size
 	assert_int_equal(reference_create(&c->reference, &c->scene, &c->file, &c->frame), GR_OK);
 }
 
+/* After a change of scene, file or frame. */
+static inline void closed_again(struct closed *c)
+{
+	reference_destroy(&c->reference);
+	assert_int_equal(reference_create(&c->reference, &c->scene, &c->file, &c->frame), GR_OK);
+}
+
+/* The same radiance from all around. */
+static inline void closed_sky(struct closed *c, float radiance)
+{
+	struct scene_file file = c->file;
+	struct gr_diag diag = { 0 };
+
+	file.environment.kind = SCENE_ENVIRONMENT_CONSTANT;
+	for (int i = 0; i < 3; i++)
+		file.environment.radiance[i] = radiance;
+	assert_int_equal(environment_create(&c->scene.environment, &file, &diag), GR_OK);
+	gr_diag_finish(&diag);
+	closed_again(c);
+}
+
 static inline void closed_end(struct closed *c)
 {
 	reference_destroy(&c->reference);
+	environment_destroy(&c->scene.environment);
 	quads_free(&c->scene);
 }
 

@@ -42,7 +42,10 @@ static void enclosure(void **state)
 		m = material((float)rho, 1);
 		closed_start(&c, quads, 6, &m, 1);
 		p.seed = (uint64_t)(100 * rho) + (uint64_t)(k + 1) * 1000;
+		/* longer paths are noisier */
 		p.samples = (int)(12288 * fmax(1, 3 * rho * rho / (1 - rho)));
+		if (k >= 0)
+			p.samples = 12288 * (1 + k / 2);
 		p.max_bounces = k < 0 ? 1024 : k;
 		closed_point(&c, &p, floor, up, &got, &error);
 		tally_add(&tally, got / PI, error / PI, want);
@@ -264,7 +267,6 @@ static void point_light(void **state)
 			continue;
 		grey = material((float)rho, 0);
 		closed_start(&c, &plane, 1, &grey, 1);
-		reference_destroy(&c.reference);
 		c.lamp = (struct scene_lamp){ .kind = SCENE_LAMP_POINT, .on = true,
 					      .direction = { 0, -1, 0 } };
 		c.lamp.position[1] = (float)h;
@@ -273,7 +275,7 @@ static void point_light(void **state)
 		c.file.lamps = &c.lamp;
 		c.file.lamp_count = 1;
 		render_frame_init(&c.frame, &c.file);
-		assert_int_equal(reference_create(&c.reference, &c.scene, &c.file, &c.frame), GR_OK);
+		closed_again(&c);
 		closed_look(&c, &few, (const double[3]){ d, 1, 0 }, down, &got, &error);
 		tally_add(&tally, got, error, want);
 		closed_end(&c);
@@ -307,7 +309,7 @@ static void rectangle_lamp(void **state)
 		    sscanf(value, ")]\",%lf", &want) != 1)
 			continue;
 		lamp_params.seed++;
-		lamp_params.samples = 1 << 14;
+		lamp_params.samples = 1 << 13;
 		closed_point(&c, &lamp_params, p, n, &got, &error);
 		tally_add(&tally, got, error, want);
 	}
@@ -369,7 +371,7 @@ static void ggx_albedo(void **state)
 	while (fgets(line, sizeof(line), f)) {
 		struct scene_material m[2] = { material(0, 1) };
 		const struct reference_params p = { .seed = (uint64_t)tally.count + 100,
-						    .samples = 1 << 15 };
+						    .samples = 1 << 14 };
 		double alpha, cosine, want, got, error, sine;
 		struct closed c;
 
@@ -392,12 +394,69 @@ static void ggx_albedo(void **state)
 	tally_end(&tally);
 }
 
+enum { SPHERE_ROUND = 256, SPHERE_HIGH = 128, SPHERE_QUADS = SPHERE_ROUND * SPHERE_HIGH };
+
+static void sphere_point(double radius, double height, int i, int j, float out[3])
+{
+	double phi = 2 * PI * i / SPHERE_ROUND, theta = PI * j / SPHERE_HIGH;
+
+	out[0] = (float)(radius * sin(theta) * cos(phi));
+	out[1] = (float)(height - radius * cos(theta));
+	out[2] = (float)(radius * sin(theta) * sin(phi));
+}
+
+/* A black sphere hides a share of the sky from a point of the plane below. */
+static void sphere_over_plane(void **state)
+{
+	static struct quad quads[SPHERE_QUADS];
+	struct tally tally = { .name = "sphere over a plane under a sky" };
+	const double upright[3] = { 0, 1, 0 };
+	const struct scene_material black = material(0, 0);
+	FILE *f = closed_open();
+	char line[1024];
+
+	(void)state;
+	while (fgets(line, sizeof(line), f)) {
+		struct reference_params p = params;
+		double r, h, d, want, got, error, covered;
+		struct closed c;
+
+		if (sscanf(line, "sphere over plane,\"plane irradiance%*[^\"]\",r=%lf;h=%lf;d=%lf,%lf", &r,
+			   &h, &d, &want) != 4)
+			continue;
+		/* as large as makes the mean silhouette that of a sphere */
+		covered = r * (1 + PI * PI / 6 * (0.5 / (SPHERE_ROUND * SPHERE_ROUND) +
+						  0.5 / (4.0 * SPHERE_HIGH * SPHERE_HIGH)));
+		for (int i = 0; i < SPHERE_ROUND; i++) {
+			for (int j = 0; j < SPHERE_HIGH; j++) {
+				struct quad *q = &quads[i * SPHERE_HIGH + j];
+
+				q->material = 0;
+				sphere_point(covered, h, i, j, q->at[0]);
+				sphere_point(covered, h, i, j + 1, q->at[1]);
+				sphere_point(covered, h, i + 1, j + 1, q->at[2]);
+				sphere_point(covered, h, i + 1, j, q->at[3]);
+			}
+		}
+		closed_start(&c, quads, SPHERE_QUADS, &black, 1);
+		closed_sky(&c, 1);
+		p.seed = (uint64_t)tally.count + 1;
+		p.samples = 1 << 14;
+		closed_point(&c, &p, (const double[3]){ d, 0, 0 }, upright, &got, &error);
+		tally_add(&tally, got, error, want);
+		closed_end(&c);
+	}
+	fclose(f);
+	tally_end(&tally);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(enclosure),
 		cmocka_unit_test(convex),
 		cmocka_unit_test(form_factors),
+		cmocka_unit_test(sphere_over_plane),
 		cmocka_unit_test(point_light),
 		cmocka_unit_test(rectangle_lamp),
 		cmocka_unit_test(infinite_planes),
