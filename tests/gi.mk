@@ -44,3 +44,9 @@ tests_accuracy_test_surfels_gl_SOURCES = tests/accuracy/test_surfels_gl.c tests/
 	$(SURFEL_RIG_SOURCES)
 tests_accuracy_test_surfels_gl_CFLAGS = $(TEST_CFLAGS) $(CGLM_CFLAGS) $(EPOXY_CFLAGS)
 tests_accuracy_test_surfels_gl_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm
+
+check_PROGRAMS += tests/unit/test_costs_file
+TESTS += tests/unit/test_costs_file
+tests_unit_test_costs_file_SOURCES = tests/unit/test_costs_file.c tests/unit/unit.h
+tests_unit_test_costs_file_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
+tests_unit_test_costs_file_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS)

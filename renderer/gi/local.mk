@@ -8,6 +8,7 @@ RENDERER_SOURCES += \
 	renderer/gi/lpv.c renderer/gi/lpv_check.c renderer/gi/lpv_private.h renderer/gi/lpv_splat.c renderer/gi/lpv_start.c \
 	renderer/gi/lpv_cpu.c renderer/gi/lpv_cpu.h renderer/gi/lpv_thesis.c \
 	renderer/gi/choose.c renderer/gi/choose.h \
+	renderer/gi/costs_file.c renderer/gi/costs_file.h \
 	renderer/gi/plan.c renderer/gi/plan.h renderer/gi/plan_error.c renderer/gi/plan_facts.c \
 	renderer/gi/sectors.c renderer/gi/sectors.h \
 	renderer/gi/surface.c renderer/gi/surface.h \
