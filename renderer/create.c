@@ -1,6 +1,7 @@
 #include "renderer/renderer_private.h"
 
 #include "base/result.h"
+#include "renderer/calibrate.h"
 #include "renderer/gi/choose.h"
 #include "renderer/gi/surfel_store.h"
 #include "renderer/gi/surfels.h"
@@ -24,6 +25,29 @@ static int check_params(const struct renderer_params *params, const struct targe
 		return GR_ERR_RANGE;
 	}
 	return GR_OK;
+}
+
+/* gi.method = "auto": method and settings from what the scene holds and what this GPU costs. */
+static void plan_light(struct renderer *r)
+{
+	const struct scene_file *file = r->file;
+	const char *from = "no costs needed";
+	struct gi_costs costs = gi_costs_usual;
+	struct gi_facts facts;
+
+	r->file_steps = file->gi.steps;
+	if (file->gi.method != SCENE_GI_AUTO)
+		return;
+	gi_facts_take(&facts, r->scene, file);
+	if (gi_plan_needs_costs(&facts))
+		calibrate_kept(&costs, r->target, &from);
+	gi_plan_make(&r->plan, &facts, &file->gi, &costs);
+	r->planned = *file;
+	r->planned.gi = r->plan.gi;
+	r->file = &r->planned;
+	r->is_planned = true;
+	gr_log(r->plan.within ? GR_LOG_NOTICE : GR_LOG_WARNING, "light, chosen for %.3g ms by %s: %s",
+	       (double)file->gi.budget_ms, from, r->plan.why);
 }
 
 /* What surfels and probes need of the scene, once, and then on the GPU. */
@@ -54,6 +78,8 @@ static int create_light(struct renderer *r, const struct emissive_patches *patch
 	int result = GR_OK;
 
 	r->choice = gi_choose(r->file, r->scene, layers > 0);
+	if (r->is_planned)
+		r->choice.why = "chosen for this scene";
 	if (r->choice.method == SCENE_GI_LPV)
 		result = rsm_create(&r->rsm, r->file->gi.rsm_pixels, layers, lamp_layers > 0,
 				    patches->count > 0);
@@ -168,6 +194,7 @@ int renderer_create(struct renderer **out, struct target *target,
 	r->params = *params;
 	r->eye_count = eyes_count(params->eyes);
 	r->fresh = true;
+	plan_light(r);
 	result = gl_mesh_create(&r->mesh, scene);
 	if (result == GR_OK)
 		result = emissive_patches(scene, &patches);
@@ -180,7 +207,8 @@ int renderer_create(struct renderer **out, struct target *target,
 		renderer_destroy(&r);
 		return result;
 	}
-	log_stages(r, &patches);
+	if (!params->quiet)
+		log_stages(r, &patches);
 	*out = r;
 	return GR_OK;
 }

@@ -71,6 +71,11 @@ int renderer_read_indirect(struct renderer *renderer, int eye, struct image *out
 	return read_image(renderer, eye, true, out);
 }
 
+const struct gi_plan *renderer_plan(const struct renderer *renderer)
+{
+	return renderer->is_planned ? &renderer->plan : NULL;
+}
+
 bool renderer_gi_stats(const struct renderer *renderer, struct gi_stats *out)
 {
 	if (!renderer->gi)

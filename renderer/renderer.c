@@ -64,6 +64,22 @@ static bool draw_shadow(struct renderer *r, const struct render_frame *frame, bo
 	return lamps || emissive;
 }
 
+/*
+ * The steps of a plan stand in for the file's, which the master sends with each
+ * frame; a number that was set while running counts as it is.
+ */
+static int update_method(struct renderer *r, const struct render_frame *frame,
+			 const struct gi_light *light)
+{
+	struct render_frame planned;
+
+	if (!r->is_planned || frame->gi_steps != r->file_steps)
+		return r->gi->ops->update(r->gi, frame, light);
+	planned = *frame;
+	planned.gi_steps = r->plan.gi.steps;
+	return r->gi->ops->update(r->gi, &planned, light);
+}
+
 /* The light field. *changed is set when it is another one. */
 static int update_gi(struct renderer *r, const struct render_frame *frame, bool *changed)
 {
@@ -88,7 +104,7 @@ static int update_gi(struct renderer *r, const struct render_frame *frame, bool 
 		light.lamps = true;
 	}
 	timers_begin(r->timers, STAGE_GI, "gi");
-	result = r->gi->ops->update(r->gi, frame, &light);
+	result = update_method(r, frame, &light);
 	timers_end(r->timers, STAGE_GI);
 	if (result < 0)
 		return result;

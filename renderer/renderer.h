@@ -34,6 +34,7 @@ struct renderer_params {
 	bool wall_given;
 	struct projection_wall wall; /* room frame; without it: a camera per still */
 	bool keep_radiance;          /* scene-linear pictures can be read back */
+	bool quiet;                  /* the stages are not logged */
 };
 
 /* Target size that params need: both eyes for side-by-side and top-bottom. */
@@ -87,6 +88,9 @@ struct renderer_point {
 #define RENDERER_POINTS_MAX ((size_t)1 << 20)
 int renderer_read_irradiance(struct renderer *renderer, const struct renderer_point *points,
 			     size_t count, float (*out)[3]);
+struct gi_plan;
+/* What was chosen for gi.method = "auto" (renderer/gi/plan.h); NULL: the scene file chose. */
+const struct gi_plan *renderer_plan(const struct renderer *renderer);
 struct gi_stats;
 /* Of the method; false when there is none. */
 bool renderer_gi_stats(const struct renderer *renderer, struct gi_stats *out);

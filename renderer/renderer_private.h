@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "renderer/gi/choose.h"
 #include "renderer/gi/gi.h"
+#include "renderer/gi/plan.h"
 #include "renderer/gl/program.h"
 #include "renderer/renderer.h"
 #include "renderer/tone/tone.h"
@@ -30,9 +31,13 @@ struct renderer_eye {
 
 struct renderer {
 	struct target *target;
-	const struct scene_file *file;
+	const struct scene_file *file; /* as given, or `planned` */
 	const struct scene *scene;
 	struct renderer_params params;
+	bool is_planned;             /* gi.method = "auto" */
+	struct gi_plan plan;
+	struct scene_file planned;   /* the file with the plan's gi; all else borrowed */
+	int file_steps;              /* propagation steps that the file says */
 	struct gl_mesh *mesh;
 	struct rsm *rsm;                 /* NULL: no global illumination, or no light for it */
 	struct shadow_stage *shadow;     /* NULL: no lamps */

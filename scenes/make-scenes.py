@@ -163,6 +163,7 @@ def cornell(lamp):
     white = m.material("white", (0.725, 0.71, 0.68))
     red = m.material("red", (0.63, 0.065, 0.05))
     green = m.material("green", (0.14, 0.45, 0.091))
+    tall = m.material("tall", (0.725, 0.71, 0.68))  # white, with a name of its own
     inside = [2.78, 2.7, 2.8]
     top, back = 5.488, 5.592
 
@@ -183,31 +184,36 @@ def cornell(lamp):
         ceiling(light, 2.13, 3.43, 2.27, 3.32)
     else:
         ceiling(white, 0, 5.56, 0, back)
-    for foot, height in CORNELL_BLOCKS.values():
+    for name, (foot, height) in CORNELL_BLOCKS.items():
+        paint = tall if name == "tall" else white
         middle = [sum(p[0] for p in foot) / 4, height / 2, sum(p[1] for p in foot) / 4]
         away = lambda p: [2 * p[i] - middle[i] for i in range(3)]
         roof = [[x, height, z] for x, z in foot]
-        m.facing(white, [middle[0], 9, middle[2]], *roof)
+        m.facing(paint, [middle[0], 9, middle[2]], *roof)
         for i in range(4):
             a, b = roof[i], roof[(i + 1) % 4]
             half = [(a[0] + b[0]) / 2, height / 2, (a[2] + b[2]) / 2]
-            m.facing(white, away(half), [a[0], 0, a[2]], a, b, [b[0], 0, b[2]])
+            m.facing(paint, away(half), [a[0], 0, a[2]], a, b, [b[0], 0, b[2]])
     return m
 
 
-def box():
-    """A room of 8 x 4 x 3 m; a wall 20 cm thick with a doorway parts it at x = 0."""
-    m = Model("two halves of a room and a doorway")
+def box(doorway):
+    """A room of 8 x 4 x 3 m; a wall 20 cm thick with a doorway, or 2 cm without, parts it at x = 0."""
+    m = Model("two halves of a room and a %s" % ("doorway" if doorway else "closed wall"))
     white = m.material("white", (0.75, 0.73, 0.7))
     floor = m.material("floor", (0.5, 0.42, 0.34))
     red = m.material("red", (0.62, 0.12, 0.08))
     blue = m.material("blue", (0.12, 0.25, 0.6))
     wood = m.material("wood", (0.55, 0.36, 0.18))
     x, y, z = 4.0, 3.0, 2.0
-    half, door, lintel = 0.1, 0.5, 2.1
+    half, door, lintel = (0.1, 0.5, 2.1) if doorway else (0.01, 0, 0)
     inside = [0, 1.5, 0]
 
-    m.facing(floor, inside, [-x, 0, z], [x, 0, z], [x, 0, -z], [-x, 0, -z])
+    if doorway:
+        m.facing(floor, inside, [-x, 0, z], [x, 0, z], [x, 0, -z], [-x, 0, -z])
+    else:
+        for a, b in ((-x, -half), (half, x)):
+            m.facing(floor, inside, [a, 0, z], [b, 0, z], [b, 0, -z], [a, 0, -z])
     for a, b in ((-x, -half), (half, x)):
         m.facing(white, inside, [a, y, z], [b, y, z], [b, y, -z], [a, y, -z])
         for side in (-z, z):
@@ -215,16 +221,20 @@ def box():
     m.facing(red, inside, [-x, 0, -z], [-x, 0, z], [-x, y, z], [-x, y, -z])
     m.facing(blue, inside, [x, 0, -z], [x, 0, z], [x, y, z], [x, y, -z])
     for side in (-half, half):
-        front = [side * 20, 1, 0]
+        front = [side * 200, 1, 0]
+        if not doorway:
+            m.facing(white, front, [side, 0, -z], [side, 0, z], [side, y, z], [side, y, -z])
+            continue
         for a, b in ((-z, -door), (door, z)):
             m.facing(white, front, [side, 0, a], [side, 0, b], [side, y, b], [side, y, a])
         m.facing(white, front, [side, lintel, -door], [side, lintel, door], [side, y, door],
                  [side, y, -door])
-    for side in (-door, door):
+    for side in (-door, door) if doorway else ():
         m.facing(white, [0, 1, 0], [-half, 0, side], [half, 0, side], [half, lintel, side],
                  [-half, lintel, side])
-    m.facing(white, [0, 0, 0], [-half, lintel, -door], [half, lintel, -door],
-             [half, lintel, door], [-half, lintel, door])
+    if doorway:
+        m.facing(white, [0, 0, 0], [-half, lintel, -door], [half, lintel, -door],
+                 [half, lintel, door], [-half, lintel, door])
     m.box(wood, [-3.2, 0, -1.5], [-2.4, 0.75, -0.7], 0.4, "xXYzZ")
     m.box(white, [2.9, 0, 0.8], [3.5, 1.3, 1.4], -0.5, "xXYzZ")
     m.box(wood, [1.3, 0, -1.7], [2.1, 0.45, -1.2], 0.1, "xXYzZ")
@@ -399,7 +409,8 @@ def grotto():
 MODELS = {
     "cornell.gltf": lambda: cornell(lamp=True),
     "cornell-spot.gltf": lambda: cornell(lamp=False),
-    "box.gltf": box,
+    "box.gltf": lambda: box(doorway=True),
+    "box-closed.gltf": lambda: box(doorway=False),
     "grotto.gltf": grotto,
 }
 

@@ -50,3 +50,9 @@ TESTS += tests/unit/test_costs_file
 tests_unit_test_costs_file_SOURCES = tests/unit/test_costs_file.c tests/unit/unit.h
 tests_unit_test_costs_file_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
 tests_unit_test_costs_file_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS)
+
+check_PROGRAMS += tests/unit/test_calibrate
+TESTS += tests/unit/test_calibrate
+tests_unit_test_calibrate_SOURCES = tests/unit/test_calibrate.c tests/unit/unit.h tests/unit/gl.h
+tests_unit_test_calibrate_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
+tests_unit_test_calibrate_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm

@@ -55,7 +55,7 @@ static double grid_cells(const struct gi_facts *facts, int longest)
 	return cells;
 }
 
-static double surfels_of(const struct gi_facts *facts, const struct scene_gi *gi)
+double gi_plan_surfels(const struct gi_facts *facts, const struct scene_gi *gi)
 {
 	double spacing = (double)gi->spacing_m;
 
@@ -73,7 +73,7 @@ double gi_plan_cost_ms(const struct gi_facts *facts, const struct scene_gi *gi,
 		break;
 	case SCENE_GI_SURFELS:
 	case SCENE_GI_PROBES:
-		surfels = surfels_of(facts, gi);
+		surfels = gi_plan_surfels(facts, gi);
 		ns = c->surfel_frame + surfels * gi->taps * lamps * c->surfel_tap +
 		     surfels * gi->links * gi->gathers * c->surfel_link;
 		if (gi->method == SCENE_GI_PROBES)
@@ -197,8 +197,8 @@ static void consider_surfels(struct search *s, struct scene_gi gi, bool probes)
 		gi.spacing_m = spacing_for(s->facts, surfel_counts[n]);
 		for (size_t l = 0; l < COUNT(link_counts); l++) {
 			gi.links = link_counts[l];
-			if (surfels_of(s->facts, &gi) > SURFELS_MOST ||
-			    surfels_of(s->facts, &gi) * gi.links > RAYS_MOST)
+			if (gi_plan_surfels(s->facts, &gi) > SURFELS_MOST ||
+			    gi_plan_surfels(s->facts, &gi) * gi.links > RAYS_MOST)
 				continue;
 			for (size_t k = 0; k < COUNT(gather_counts) * COUNT(tap_counts); k++) {
 				gi.gathers = gather_counts[k % COUNT(gather_counts)];
@@ -216,6 +216,11 @@ static bool has_light(const struct gi_facts *facts)
 {
 	return facts->lamps_fixed + facts->lamps_moving > 0 || facts->emissive_triangles > 0 ||
 	       facts->environment;
+}
+
+bool gi_plan_needs_costs(const struct gi_facts *facts)
+{
+	return has_light(facts) && isfinite(facts->area_m2) && facts->area_m2 > 0;
 }
 
 static void say_settings(char *text, size_t size, const struct scene_gi *gi)
@@ -280,7 +285,7 @@ void gi_plan_make(struct gi_plan *out, const struct gi_facts *facts, const struc
 	s.budget_ms = wanted->budget_ms > 0 ? (double)wanted->budget_ms : 0;
 	if (!gi_costs_valid(costs))
 		s.costs = &gi_costs_usual;
-	if (has_light(facts) && isfinite(facts->area_m2) && facts->area_m2 > 0) {
+	if (gi_plan_needs_costs(facts)) {
 		if (facts->scattering_per_m > 0) {
 			consider_lattices(&s, *wanted);
 		} else {

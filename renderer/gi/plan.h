@@ -64,10 +64,14 @@ struct gi_plan {
  */
 void gi_plan_make(struct gi_plan *out, const struct gi_facts *facts, const struct scene_gi *wanted,
 		  const struct gi_costs *costs);
+/* Whether there is anything to choose by cost. */
+bool gi_plan_needs_costs(const struct gi_facts *facts);
 /* What settings cost and how they err, by the same models. ms of a frame; a share. */
 double gi_plan_cost_ms(const struct gi_facts *facts, const struct scene_gi *gi,
 		       const struct gi_costs *costs);
 double gi_plan_error(const struct gi_facts *facts, const struct scene_gi *gi);
+/* About how many surfels settings give. */
+double gi_plan_surfels(const struct gi_facts *facts, const struct scene_gi *gi);
 /* Of what shapes the light in settings, whether planned or written in a file. */
 uint64_t gi_plan_hash(const struct scene_gi *gi);
 

@@ -111,6 +111,7 @@ static int upload_distance(struct surfels *s, const struct surfel_probes *from)
 	}
 	glCreateTextures(GL_TEXTURE_2D, 1, &p->distance);
 	glTextureStorage2D(p->distance, 1, GL_RG32F, columns * TILE, rows * TILE);
+	s->stats.gpu_bytes += (uint64_t)(columns * TILE) * (uint64_t)(rows * TILE) * 8;
 	glTextureParameteri(p->distance, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
 	glTextureParameteri(p->distance, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
 	for (size_t i = 0; i < from->count; i++) {

@@ -39,6 +39,7 @@ int surfels_storage(struct surfels *s, struct surfels_buffer *out, const char *w
 	}
 	glCreateBuffers(1, &out->buffer);
 	glNamedBufferStorage(out->buffer, (GLsizeiptr)bytes, data, GL_DYNAMIC_STORAGE_BIT);
+	s->stats.gpu_bytes += bytes;
 	if (!data)
 		glClearNamedBufferData(out->buffer, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
 	if (format) {

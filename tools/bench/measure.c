@@ -289,6 +289,7 @@ int bench_measure(struct bench_result *out, const struct bench_view *view,
 
 	*out = (struct bench_result){ .used = *c, .flicker = { NAN, NAN }, .leak = NAN };
 	run.file.gi = c->gi;
+	run.file.path = NULL; /* nothing baked is kept or taken: baking is measured, too */
 	bench_motion_init(&run.motion, &run.file);
 	out->moves = run.motion.lamp >= 0;
 	result = measure_all(&run, out);
