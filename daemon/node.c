@@ -302,6 +302,7 @@ static int create_protocol(struct node *n)
 		.name = layout->nodes[n->params.index].name,
 		.datagram_max = net_datagram_max(&layout->network),
 		.silence_ns = SILENCE_NS,
+		.plan = n->params.plan,
 		.share_bytes = n->share.room,
 	};
 	struct fdp_node_ops ops = { send_datagram, on_event, n };

@@ -30,6 +30,7 @@ struct node_params {
 	size_t index; /* of this node */
 	const struct scene_file *scene_file;
 	uint8_t content_hash[32];
+	uint64_t plan; /* of gi.method = "auto" (renderer/gi/plan.h); 0: the scene file says it */
 	uint8_t key[FDP_KEY_BYTES];
 	bool window;    /* the target is a window, which must be answered */
 	bool once;      /* end when the master ends or refuses */

@@ -11,6 +11,7 @@
 #include "daemon/priority.h"
 #include "daemon/privileges.h"
 #include "daemon/room_files.h"
+#include "renderer/gi/plan.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -205,6 +206,8 @@ static int open_all(struct opened *o, const struct node_options *options)
 		return r;
 	memcpy(params.content_hash, o->files.content_hash, sizeof params.content_hash);
 	memcpy(params.key, o->files.key, sizeof params.key);
+	if (renderer_plan(o->renderer))
+		params.plan = renderer_plan(o->renderer)->hash;
 	return node_create(&o->node, o->loop, o->net, o->target, o->renderer, o->pictures, &params);
 }
 

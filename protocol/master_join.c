@@ -48,6 +48,26 @@ static bool hashes_differ(const char *what, const uint8_t theirs[32], const uint
 	return true;
 }
 
+/*
+ * Nodes whose light is not computed alike would show a seam. The master draws
+ * nothing and has no plan of its own: who is in the room decides.
+ */
+static bool plans_differ(const struct fdp_master *m, const struct fdp_join *join,
+			 char reason[FDP_REASON_MAX])
+{
+	for (size_t i = 0; i < m->params.node_count; i++) {
+		const struct fdp_peer *peer = &m->peers[i];
+
+		if (i == join->index || !fdp_peer_present(peer->state) || peer->plan == join->plan)
+			continue;
+		snprintf(reason, FDP_REASON_MAX,
+			 "another plan of the light: the node's %016llx, '%s' has %016llx; name gi.method and its settings in the scene file",
+			 (unsigned long long)join->plan, m->names[i], (unsigned long long)peer->plan);
+		return true;
+	}
+	return false;
+}
+
 /* Writes both values into the reason: they must differ where a person can see it. */
 static bool refuses(const struct fdp_master *m, unsigned version, const struct fdp_join *join,
 		    char reason[FDP_REASON_MAX])
@@ -73,7 +93,8 @@ static bool refuses(const struct fdp_master *m, unsigned version, const struct f
 		return true;
 	}
 	return hashes_differ("layout", join->layout_hash, m->params.layout_hash, reason) ||
-	       hashes_differ("scene", join->scene_hash, m->params.scene_hash, reason);
+	       hashes_differ("scene", join->scene_hash, m->params.scene_hash, reason) ||
+	       plans_differ(m, join, reason);
 }
 
 static void refuse(struct fdp_master *m, unsigned node, const struct fdp_join *join,
@@ -142,6 +163,7 @@ static void admit(struct fdp_master *m, unsigned node, const struct fdp_header *
 
 	count_out(m, node, "joins anew", now_ns);
 	peer->joins++;
+	peer->plan = join->plan;
 	memcpy(peer->challenge, join->challenge, sizeof peer->challenge);
 	fdp_replay_start(&peer->window, first - 1);
 	fdp_replay_take(&peer->window, header->sequence);

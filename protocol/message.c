@@ -3,7 +3,7 @@
 #include "base/cursor.h"
 #include "base/result.h"
 
-#define JOIN_USED 144
+#define JOIN_USED 152
 
 static size_t written(const struct gr_writer *w)
 {
@@ -48,6 +48,7 @@ size_t fdp_join_encode(const struct fdp_join *m, uint8_t *bytes, size_t size)
 	gr_write_bytes(&w, m->scene_hash, sizeof m->scene_hash);
 	gr_write_u64(&w, m->table_hash);
 	gr_write_bytes(&w, m->name, sizeof m->name);
+	gr_write_u64(&w, m->plan);
 	gr_write_bytes(&w, zero, sizeof zero);
 	return written(&w);
 }
@@ -69,6 +70,7 @@ int fdp_join_decode(const uint8_t *bytes, size_t len, struct fdp_join *out)
 	read_into(&r, out->scene_hash, sizeof out->scene_hash);
 	out->table_hash = gr_read_u64(&r);
 	read_into(&r, out->name, sizeof out->name);
+	out->plan = gr_read_u64(&r);
 	pad = gr_read_bytes(&r, FDP_JOIN_BYTES - JOIN_USED);
 	for (size_t i = 0; pad && i < FDP_JOIN_BYTES - JOIN_USED; i++)
 		any |= pad[i];

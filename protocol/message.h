@@ -21,6 +21,7 @@ struct fdp_join {
 	uint8_t layout_hash[32], scene_hash[32];
 	uint64_t table_hash; /* of the parameter table */
 	char name[FDP_NAME_BYTES];
+	uint64_t plan; /* of how this node computes the light, where that is not the scene file's to say; 0: it is */
 };
 
 struct fdp_welcome {

@@ -125,6 +125,7 @@ static void send_join(struct fdp_node *n, uint64_t session, int64_t now_ns)
 		.version = FDP_VERSION,
 		.index = n->params.index,
 		.table_hash = param_table_hash(),
+		.plan = n->params.plan,
 	};
 
 	memcpy(join.nonce, session ? n->joined_nonce : n->nonce, sizeof join.nonce);
@@ -192,6 +193,14 @@ static enum fdp_verdict on_refuse(struct fdp_node *n, const struct fdp_header *h
 
 	if (fdp_refuse_decode(body, h->payload_len, &r))
 		return FDP_BAD_FORMAT;
+	/* Welcome when it asked, but not when it came: somebody with another plan was faster. */
+	if (n->status == FDP_NODE_WAITING_SNAPSHOT &&
+	    !sodium_memcmp(r.nonce, n->joined_nonce, sizeof r.nonce)) {
+		memcpy(n->refused, r.reason, sizeof n->refused);
+		n->refused_ns = now_ns;
+		fdp_node_ask_again(n, FDP_NODE_REFUSED, n->refused);
+		return FDP_GOOD;
+	}
 	if (sodium_memcmp(r.nonce, n->nonce, sizeof r.nonce))
 		return FDP_BAD_REPLAY;
 	if (!strcmp(r.reason, n->refused) && now_ns - n->refused_ns < REFUSED_AGAIN_NS)

@@ -43,6 +43,7 @@ struct fdp_node_params {
 	const char *name;
 	uint8_t key[FDP_KEY_BYTES];
 	uint8_t layout_hash[32], scene_hash[32];
+	uint64_t plan; /* as struct fdp_join's; nodes of one room must have one */
 	size_t datagram_max;
 	int64_t join_ns;    /* between two requests to join; 0: 200 ms */
 	int64_t silence_ns; /* master counts as lost after this; 0: 2 s */

@@ -718,6 +718,33 @@ static void refusals(void **state)
 	refuse_one(spoil_name, "wall1", "floor");
 }
 
+/* Who is first in the room says how light is computed; of two that differ one is told why not. */
+static void other_plan(void **state)
+{
+	struct sim s;
+	unsigned in;
+
+	(void)state;
+	sim_init(&s, 2, 2);
+	sim_start_all(&s);
+	s.nodes[0].node->params.plan = 0x1234;
+	s.nodes[1].node->params.plan = 0x1235;
+	sim_run_ns(&s, 1500 * SIM_MS);
+	in = s.nodes[0].node->status == FDP_NODE_ASKING;
+	assert_int_not_equal(s.nodes[in].node->status, FDP_NODE_ASKING);
+	assert_int_equal(s.nodes[!in].node->status, FDP_NODE_ASKING);
+	assert_int_equal(s.nodes[!in].refused, 1);
+	assert_non_null(strstr(s.nodes[!in].reason, "another plan of the light"));
+	assert_non_null(strstr(s.nodes[!in].reason, "0000000000001234"));
+	assert_non_null(strstr(s.nodes[!in].reason, "0000000000001235"));
+	/* alike they both come in */
+	s.nodes[!in].node->params.plan = s.nodes[in].node->params.plan;
+	sim_run_ns(&s, 1500 * SIM_MS);
+	assert_int_not_equal(s.nodes[!in].node->status, FDP_NODE_ASKING);
+	assert_int_not_equal(s.nodes[in].node->status, FDP_NODE_ASKING);
+	sim_finish(&s);
+}
+
 /* A JOIN in the form of a later version is answered, so that its operator learns why. */
 static void other_version(void **state)
 {
@@ -817,6 +844,7 @@ int main(void)
 		cmocka_unit_test(recordings_are_not_fresh),
 		cmocka_unit_test(bit_flips),
 		cmocka_unit_test(refusals),
+		cmocka_unit_test(other_plan),
 		cmocka_unit_test(other_version),
 		cmocka_unit_test(storm),
 	};
