@@ -1,13 +1,14 @@
 #include "renderer/gi/surface.h"
 
 #include "base/result.h"
+#include "renderer/scene/texel.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 struct surface_lookup {
 	const struct scene *scene;
 	uint32_t *material; /* per triangle */
+	struct texel_curve curve;
 };
 
 int surface_lookup_create(struct surface_lookup **out, const struct scene *scene)
@@ -19,6 +20,7 @@ int surface_lookup_create(struct surface_lookup **out, const struct scene *scene
 	if (!lookup)
 		return GR_ERR_NOMEM;
 	lookup->scene = scene;
+	texel_curve_init(&lookup->curve);
 	lookup->material = calloc(triangles ? triangles : 1, sizeof *lookup->material);
 	if (!lookup->material) {
 		free(lookup);
@@ -43,36 +45,10 @@ void surface_lookup_destroy(struct surface_lookup **lookup)
 	*lookup = NULL;
 }
 
-static float srgb_to_linear(float v)
-{
-	return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
-}
-
-/* Nearest texel, repeating. */
-static void image_sample(const struct scene_image *image, const float uv[2], float out[3])
-{
-	int at[2];
-	int size[2] = { image->width, image->height };
-	const uint8_t *texel;
-
-	for (int i = 0; i < 2; i++) {
-		float t = uv[i] - floorf(uv[i]);
-
-		at[i] = isfinite(t) ? (int)(t * (float)size[i]) : 0;
-		if (at[i] >= size[i])
-			at[i] = size[i] - 1;
-	}
-	texel = image->rgba + 4 * ((size_t)at[0] + (size_t)at[1] * (size_t)size[0]);
-	for (int c = 0; c < 3; c++) {
-		float v = (float)texel[c] / 255.0f;
-
-		out[c] = image->srgb ? srgb_to_linear(v) : v;
-	}
-}
-
-static void texture_at(const struct scene *scene, const struct scene_material *material,
+static void texture_at(const struct surface_lookup *lookup, const struct scene_material *material,
 		       const struct ray_hit *hit, float albedo[3])
 {
+	const struct scene *scene = lookup->scene;
 	const uint32_t *t = scene->indices + 3 * (size_t)hit->triangle;
 	float uv[2], texel[3];
 
@@ -82,7 +58,7 @@ static void texture_at(const struct scene *scene, const struct scene_material *m
 		uv[i] = (1 - hit->u - hit->v) * scene->vertices[t[0]].uv[i] +
 			hit->u * scene->vertices[t[1]].uv[i] +
 			hit->v * scene->vertices[t[2]].uv[i];
-	image_sample(&scene->images[material->diffuse_image], uv, texel);
+	texel_at(&lookup->curve, &scene->images[material->diffuse_image], uv, texel);
 	for (int c = 0; c < 3; c++)
 		albedo[c] *= texel[c];
 }
@@ -106,7 +82,7 @@ void surface_at(const struct surface_lookup *lookup, const struct ray_hit *hit,
 		out->albedo[c] = out->back ? 0.0f : material->diffuse[c];
 	if (out->back)
 		return;
-	texture_at(lookup->scene, material, hit, out->albedo);
+	texture_at(lookup, material, hit, out->albedo);
 	for (int c = 0; c < 3; c++)
 		if (albedo_override[c] >= 0)
 			out->albedo[c] = albedo_override[c];
