@@ -6,6 +6,7 @@
 #ifndef GROTTO_TOOLS_COMMAND_H
 #define GROTTO_TOOLS_COMMAND_H
 
+int command_bake(int argc, char **argv);
 int command_bench(int argc, char **argv);
 int command_check(int argc, char **argv);
 int command_demo(int argc, char **argv);

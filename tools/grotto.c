@@ -13,6 +13,7 @@ static const struct command {
 	int (*run)(int argc, char **argv);
 	const char *summary;
 } commands[] = {
+	{ "bake", command_bake, "compute a scene's surfels before the room starts" },
 	{ "bench", command_bench, "measure a part of grotto on this machine" },
 	{ "check", command_check, "check layout and scene files, report gaps between walls" },
 	{ "demo", command_demo, "run a whole cave on this machine, leave its pictures and figures" },

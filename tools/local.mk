@@ -18,6 +18,7 @@ bin_PROGRAMS += tools/grotto
 tools_grotto_SOURCES = \
 	tools/command.h \
 	tools/grotto.c \
+	tools/bake.c \
 	tools/bench.c \
 	tools/check.c \
 	tools/demo.c tools/demo.h \

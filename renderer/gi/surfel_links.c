@@ -1,6 +1,7 @@
 /* What lights a surfel: rays from its patch to the surfels that they meet. */
 #include "renderer/gi/surfel_bake_private.h"
 
+#include "base/clock.h"
 #include "base/result.h"
 #include "renderer/gi/surfel_random.h"
 
@@ -115,6 +116,8 @@ static void link_all(void *ctx, size_t begin, size_t end, int thread)
 int bake_links(struct bake *bake)
 {
 	struct surfel_set *set = bake->set;
+	int64_t start = gr_clock_now(&gr_clock_monotonic);
+	int result;
 
 	set->links_each = (uint32_t)bake->params.links;
 	set->links = malloc((set->count * set->links_each + 1) * sizeof *set->links);
@@ -122,5 +125,7 @@ int bake_links(struct bake *bake)
 	if (!set->links || !set->fixed_other)
 		return GR_ERR_NOMEM;
 	set->rays += set->count * set->links_each;
-	return bake_run(bake, set->count, 8, link_all, bake);
+	result = bake_run(bake, set->count, 8, link_all, bake);
+	set->ray_seconds = (double)(gr_clock_now(&gr_clock_monotonic) - start) * 1e-9;
+	return result;
 }

@@ -117,7 +117,7 @@ struct surfel_set {
 
 	/* How it was made. */
 	size_t rays;
-	double seconds, ray_seconds; /* all of it; tracing, all threads together */
+	double seconds, ray_seconds; /* all of it; the surfels' links alone */
 	int threads;
 };
 

@@ -1,0 +1,151 @@
+/* grotto bake SCENE: computes a scene's surfels before the room starts. */
+#include "base/result.h"
+#include "renderer/gi/surfel_store.h"
+#include "renderer/scene/scene.h"
+#include "tools/cli.h"
+#include "tools/command.h"
+#include "tools/progress.h"
+#include "tools/say.h"
+
+#include <stdio.h>
+#include <string.h>
+
+struct bake_options {
+	const char *out;
+	int threads;
+	bool force;
+};
+
+struct bake_run {
+	const struct bake_options *options;
+	struct scene_file *file;
+	struct scene *scene;
+	struct surfel_store store;
+	struct surfel_set *set;
+	struct surfel_store_done done;
+	struct progress progress;
+};
+
+static void run_finish(struct bake_run *run)
+{
+	surfel_set_destroy(&run->set);
+	surfel_store_finish(&run->store);
+	scene_destroy(&run->scene);
+	scene_file_destroy(&run->file);
+}
+
+static bool show(void *ctx, const char *stage, double done, double seconds_left)
+{
+	struct bake_run *run = ctx;
+
+	progress_show(&run->progress, done, seconds_left, stage);
+	return !progress_asked_to_end();
+}
+
+static int load(struct bake_run *run, const char *path)
+{
+	struct gr_diag diag = { 0 };
+	int result = scene_file_load(path, &run->file, &diag);
+
+	if (result == GR_OK)
+		result = scene_import(run->file, &run->scene, &diag);
+	say_diag(&diag);
+	gr_diag_finish(&diag);
+	/* A file that cannot be opened is a wrong path. */
+	return result == GR_ERR_IO || result == GR_ERR_RANGE || result == GR_ERR_FORMAT
+		       ? GR_ERR_CONFIG
+		       : result;
+}
+
+static int get(struct bake_run *run)
+{
+	struct surfel_bake_params params;
+	struct gr_diag diag = { 0 };
+	int result = run->options->out ? surfel_store_at(&run->store, run->options->out)
+				       : surfel_store_init(&run->store, run->file);
+
+	if (result != GR_OK)
+		return result;
+	run->store.force = run->options->force;
+	surfel_bake_params_of(run->file, &params);
+	params.threads = run->options->threads;
+	params.progress = show;
+	params.ctx = run;
+	progress_hold_signals();
+	progress_start(&run->progress, "baking");
+	result = surfel_store_get(&run->store, &run->set, run->scene, run->file, &params, &diag,
+				  &run->done);
+	progress_end(&run->progress);
+	say_diag(&diag);
+	gr_diag_finish(&diag);
+	return result == GR_ERR_RANGE ? GR_ERR_CONFIG : result;
+}
+
+static void report(const struct bake_run *run)
+{
+	const struct surfel_set *set = run->set;
+	size_t alive = 0;
+
+	for (size_t i = 0; i < set->probes.count; i++)
+		alive += set->probes.alive[i];
+	printf("%zu triangles: %zu surfels %.3g m apart, %u links and %u taps each\n",
+	       run->scene->index_count / 3, set->count, (double)set->spacing_m, set->links_each,
+	       set->taps_each);
+	if (set->probes.count > 0)
+		printf("%zu probes, %zu of them alive, %.3g m apart\n", set->probes.count, alive,
+		       (double)set->probes.cell_m);
+	printf("%s%.2f s on %d thread%s, %.3g rays", run->done.baked ? "" : "baked before in ",
+	       set->seconds, set->threads, set->threads == 1 ? "" : "s", (double)set->rays);
+	if (set->ray_seconds > 0)
+		printf(", links at %.2f million rays/s",
+		       (double)set->count * set->links_each / set->ray_seconds * 1e-6);
+	printf("\n");
+	if (run->done.path)
+		printf("%s: %s, %.1f MB\n", run->done.path, run->done.baked ? "written" : "is up to date",
+		       (double)surfel_set_bytes(set) * 1e-6);
+}
+
+int command_bake(int argc, char **argv)
+{
+	struct bake_options o = { 0 };
+	const struct cli_option options[] = {
+		{ "force", 'f', CLI_FLAG, &o.force, 0, 0, NULL, "even if there is a file that fits" },
+		{ "threads", 'j', CLI_INT, &o.threads, 0, 256, "N", "0: one a core (0)" },
+		{ "out", 'o', CLI_TEXT, &o.out, 0, 0, "FILE",
+		  "this file, instead of SCENE.surfels beside the scene" },
+	};
+	const struct cli_table table = {
+		"grotto bake SCENE [--force] [--threads N] [--out FILE]",
+		"Computes what relit surfels need of a scene, so that the room need not wait for it at\n"
+		"its start. The file is kept beside the scene, or else in the cache; nodes look there,\n"
+		"and bake by themselves what they do not find. Equal for any number of threads.",
+		options, sizeof options / sizeof options[0]
+	};
+	struct bake_run run = { .options = &o };
+	int words, result;
+
+	switch (cli_parse(&table, argc, argv, &words)) {
+	case CLI_HELP: return GR_EXIT_OK;
+	case CLI_WRONG: return GR_EXIT_CONFIG;
+	case CLI_RUN: break;
+	}
+	if (words != 1) {
+		fprintf(stderr, "grotto bake: needs one SCENE\n");
+		return GR_EXIT_CONFIG;
+	}
+	result = load(&run, argv[1]);
+	if (result == GR_OK)
+		result = get(&run);
+	if (result == GR_OK)
+		report(&run);
+	else
+		fprintf(stderr, "grotto bake: %s: %s\n", argv[1],
+			result == GR_NOTHING ? "stopped; nothing is written" : gr_result_name(result));
+	/* what was baked and cannot be kept has not done its work */
+	if (result == GR_OK && !run.done.path)
+		result = GR_ERR_IO;
+	run_finish(&run);
+	if (result == GR_OK)
+		return GR_EXIT_OK;
+	return result == GR_ERR_CONFIG ? GR_EXIT_CONFIG : GR_EXIT_RUNTIME;
+}
