@@ -28,12 +28,21 @@ struct bake_point {
 };
 
 /* Buckets of a spatial hash: items in cells of a cube grid, found by cell. */
+struct bake_cell {
+	uint64_t key; /* of its place, 0: empty */
+	uint32_t first, count;
+};
 struct bake_cells {
 	float cell_m;
-	size_t slots;    /* power of two */
-	uint64_t *keys;  /* cell + 1, 0 empty */
-	uint32_t *first; /* slots + 1 */
+	size_t slot_count; /* power of two */
+	struct bake_cell *slots;
 	uint32_t *items;
+};
+
+/* What a hit looks up, in the order of the cells' items: close together in memory. */
+struct bake_near {
+	struct v3 position;
+	uint32_t side, patch;
 };
 
 struct bake {
@@ -62,6 +71,7 @@ struct bake {
 	size_t point_count;
 	float point_area;        /* mean */
 	struct bake_cells cells; /* of the points */
+	struct bake_near *near;  /* of each of its items; once all belong to surfels */
 	uint32_t *chosen;        /* points that are surfels */
 	size_t chosen_count;
 	struct bake_cells surfel_cells;

@@ -20,52 +20,69 @@ static uint64_t cell_key(float cell_m, struct v3 p, const int step[3])
 static size_t find(const struct bake_cells *cells, uint64_t key)
 {
 	uint64_t x = key * UINT64_C(0x9e3779b97f4a7c15);
-	size_t slot = (size_t)(x >> 32) & (cells->slots - 1);
+	size_t slot = (size_t)(x >> 32) & (cells->slot_count - 1);
 
-	while (cells->keys[slot] && cells->keys[slot] != key)
-		slot = (slot + 1) & (cells->slots - 1);
+	while (cells->slots[slot].key && cells->slots[slot].key != key)
+		slot = (slot + 1) & (cells->slot_count - 1);
 	return slot;
+}
+
+/* A table for `wanted` cells; filled with those of all items. Returns how many there are. */
+static size_t enter(struct bake_cells *out, size_t wanted, size_t count,
+		    struct v3 (*position)(const void *ctx, size_t i), const void *ctx)
+{
+	static const int here[3] = { 0, 0, 0 };
+	size_t used = 0;
+
+	out->slot_count = 1024;
+	while (out->slot_count < 2 * wanted)
+		out->slot_count *= 2;
+	free(out->slots);
+	out->slots = calloc(out->slot_count, sizeof *out->slots);
+	for (size_t i = 0; out->slots && i < count; i++) {
+		uint64_t key = cell_key(out->cell_m, position(ctx, i), here);
+		struct bake_cell *cell = &out->slots[find(out, key)];
+
+		used += cell->key == 0;
+		cell->key = key;
+		cell->count++;
+	}
+	return used;
 }
 
 int bake_cells_build(struct bake_cells *out, float cell_m, size_t count,
 		     struct v3 (*position)(const void *ctx, size_t i), const void *ctx)
 {
 	static const int here[3] = { 0, 0, 0 };
-	uint32_t *slot_of;
+	size_t used;
+	uint32_t at = 0;
 
-	*out = (struct bake_cells){ .cell_m = cell_m, .slots = 1024 };
-	while (out->slots < 2 * count)
-		out->slots *= 2;
-	out->keys = calloc(out->slots, sizeof *out->keys);
-	out->first = calloc(out->slots + 1, sizeof *out->first);
+	*out = (struct bake_cells){ .cell_m = cell_m };
 	out->items = calloc(count + 1, sizeof *out->items);
-	slot_of = calloc(count + 1, sizeof *slot_of);
-	if (!out->keys || !out->first || !out->items || !slot_of) {
-		free(slot_of);
+	/* again for the cells that there are: a small table stays in the caches */
+	used = enter(out, count, count, position, ctx);
+	if (out->slots && 4 * used < out->slot_count)
+		enter(out, used, count, position, ctx);
+	if (!out->slots || !out->items) {
 		bake_cells_finish(out);
 		return GR_ERR_NOMEM;
 	}
-	for (size_t i = 0; i < count; i++) {
-		uint64_t key = cell_key(cell_m, position(ctx, i), here);
-		size_t slot = find(out, key);
-
-		out->keys[slot] = key;
-		slot_of[i] = (uint32_t)slot;
-		out->first[slot]++;
-	}
 	/* ends, and then each item moves its cell's down: rising order within a cell */
-	for (size_t s = 0; s < out->slots; s++)
-		out->first[s + 1] += out->first[s];
-	for (size_t i = count; i-- > 0;)
-		out->items[--out->first[slot_of[i]]] = (uint32_t)i;
-	free(slot_of);
+	for (size_t s = 0; s < out->slot_count; s++) {
+		at += out->slots[s].count;
+		out->slots[s].first = at;
+	}
+	for (size_t i = count; i-- > 0;) {
+		size_t slot = find(out, cell_key(cell_m, position(ctx, i), here));
+
+		out->items[--out->slots[slot].first] = (uint32_t)i;
+	}
 	return GR_OK;
 }
 
 void bake_cells_finish(struct bake_cells *cells)
 {
-	free(cells->keys);
-	free(cells->first);
+	free(cells->slots);
 	free(cells->items);
 	*cells = (struct bake_cells){ 0 };
 }
@@ -73,8 +90,9 @@ void bake_cells_finish(struct bake_cells *cells)
 size_t bake_cells_at(const struct bake_cells *cells, struct v3 position, const int step[3],
 		     const uint32_t **out_items)
 {
-	size_t slot = find(cells, cell_key(cells->cell_m, position, step));
+	const struct bake_cell *cell =
+		&cells->slots[find(cells, cell_key(cells->cell_m, position, step))];
 
-	*out_items = cells->items + cells->first[slot];
-	return cells->first[slot + 1] - cells->first[slot];
+	*out_items = cells->items + cell->first;
+	return cell->count;
 }

@@ -10,70 +10,67 @@
 /* Points of another plane than this, of the spacing, are another surface's. */
 #define OTHER_PLANE 0.1f
 
-/* The nearest point of a side among those of one cell; -1: there is none. */
-static int64_t nearest_in(const struct bake *bake, struct v3 position, uint32_t side,
-			  const int step[3], float *square)
+/* The nearest point of a side among those of one cell; NULL: there is none nearer than *square. */
+static const struct bake_near *nearest_in(const struct bake *bake, struct v3 position,
+					  uint32_t side, const int step[3], float *square)
 {
 	const uint32_t *items;
 	size_t n = bake_cells_at(&bake->cells, position, step, &items);
-	int64_t found = -1;
+	const struct bake_near *near = bake->near + (items - bake->cells.items), *found = NULL;
 
 	for (size_t k = 0; k < n; k++) {
-		const struct bake_point *p = &bake->points[items[k]];
-		struct v3 d = v3_sub(p->position, position);
+		struct v3 d = v3_sub(near[k].position, position);
 		float s = v3_dot(d, d);
 
 		if (s >= *square)
 			continue;
-		if (p->side != side) {
+		if (near[k].side != side) {
 			struct v3 m = bake_normal(bake, side);
 
-			if (v3_dot(bake_normal(bake, p->side), m) < BAKE_SAME_SIDE ||
+			if (v3_dot(bake_normal(bake, near[k].side), m) < BAKE_SAME_SIDE ||
 			    fabsf(v3_dot(d, m)) > OTHER_PLANE * bake->spacing)
 				continue;
 		}
 		*square = s;
-		found = items[k];
+		found = &near[k];
 	}
 	return found;
 }
 
 /* Seen from the surfel, as reach knows it. */
-static bool in_sight(const struct bake *bake, uint32_t surfel, struct v3 position)
+static bool in_sight(const struct bake *bake, const struct bake_near *near, struct v3 position)
 {
 	float at[3];
 
-	if (surfel == SURFEL_NONE)
+	if (!near || near->patch == SURFEL_NONE)
 		return false;
 	v3_put(position, at);
-	return surfel_sight(bake->set, surfel, at) <= 1;
+	return surfel_sight(bake->set, near->patch, at) <= 1;
 }
 
 uint32_t bake_surfel_at(const struct bake *bake, struct v3 position, uint32_t side)
 {
 	static const int here[3] = { 0, 0, 0 };
 	float square = INFINITY;
-	int64_t found = nearest_in(bake, position, side, here, &square);
+	const struct bake_near *found = nearest_in(bake, position, side, here, &square);
 	struct bake_point p = { .position = position, .side = side, .lift = bake->lift };
 	uint32_t surfel;
 
-	if (found >= 0 && in_sight(bake, bake->points[found].patch, position))
-		return bake->points[found].patch;
+	if (in_sight(bake, found, position))
+		return found->patch;
 	for (int k = 0; k < 27; k++) {
 		const int step[3] = { k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1 };
-		int64_t other = nearest_in(bake, position, side, step, &square);
+		const struct bake_near *other = nearest_in(bake, position, side, step, &square);
 
-		found = other >= 0 ? other : found;
+		found = other ? other : found;
 	}
-	if (found >= 0 && in_sight(bake, bake->points[found].patch, position))
-		return bake->points[found].patch;
+	if (in_sight(bake, found, position))
+		return found->patch;
 	/* Beside a wall: the point may belong to what is on its other side. */
-	if (found >= 0)
-		p.lift = bake->points[found].lift;
+	if (found)
+		p.lift = bake->points[bake->cells.items[found - bake->near]].lift;
 	surfel = bake_nearest_surfel(bake, &p);
-	if (surfel == SURFEL_NONE && found >= 0)
-		surfel = bake->points[found].patch;
-	return surfel;
+	return surfel == SURFEL_NONE && found ? found->patch : surfel;
 }
 
 struct v3 bake_cosine(struct v3 normal, const float u[2])

@@ -261,5 +261,15 @@ int bake_assign(struct bake *bake)
 	/* A surfel's own point is its own, whatever stands nearby. */
 	for (size_t i = 0; i < bake->chosen_count && result == GR_OK; i++)
 		bake->points[bake->chosen[i]].patch = (uint32_t)i;
-	return result;
+	if (result != GR_OK)
+		return result;
+	bake->near = calloc(bake->point_count + 1, sizeof *bake->near);
+	if (!bake->near)
+		return GR_ERR_NOMEM;
+	for (size_t k = 0; k < bake->point_count; k++) {
+		const struct bake_point *p = &bake->points[bake->cells.items[k]];
+
+		bake->near[k] = (struct bake_near){ p->position, p->side, p->patch };
+	}
+	return GR_OK;
 }
