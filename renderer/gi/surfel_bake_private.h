@@ -24,6 +24,7 @@ struct bake_point {
 	float u, v;    /* in the triangle, as struct ray_hit's */
 	float area;    /* m^2 that it stands for */
 	float lift;    /* m above the surface from which sight is looked for */
+	bool covered;  /* by a surface of the same side, within a plane's tolerance */
 	uint32_t patch; /* surfel */
 };
 

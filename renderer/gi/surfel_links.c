@@ -7,8 +7,13 @@
 
 #include <stdlib.h>
 
-/* Points of another plane than this, of the spacing, are another surface's. */
-#define OTHER_PLANE 0.1f
+/*
+ * A point of another triangle is on the same surface when it is no more than this
+ * off the plane, of its distance: what bends is, the other face of a thin wall is
+ * not. And those on the plane come first.
+ */
+#define OFF_PLANE 0.4f
+#define OFF_WEIGHT 32.0f
 
 /* The nearest point of a side among those of one cell; NULL: there is none nearer than *square. */
 static const struct bake_near *nearest_in(const struct bake *bake, struct v3 position,
@@ -26,9 +31,13 @@ static const struct bake_near *nearest_in(const struct bake *bake, struct v3 pos
 			continue;
 		if (near[k].side != side) {
 			struct v3 m = bake_normal(bake, side);
+			float off = v3_dot(d, m);
 
 			if (v3_dot(bake_normal(bake, near[k].side), m) < BAKE_SAME_SIDE ||
-			    fabsf(v3_dot(d, m)) > OTHER_PLANE * bake->spacing)
+			    off * off > OFF_PLANE * OFF_PLANE * s)
+				continue;
+			s += OFF_WEIGHT * off * off;
+			if (s >= *square)
 				continue;
 		}
 		*square = s;
@@ -45,7 +54,9 @@ static bool in_sight(const struct bake *bake, const struct bake_near *near, stru
 	if (!near || near->patch == SURFEL_NONE)
 		return false;
 	v3_put(position, at);
-	return surfel_sight(bake->set, near->patch, at) <= 1;
+	/* in a cavity reach says nothing */
+	return bake->set->surfels[near->patch].reach[0] == 1 ||
+	       surfel_sight(bake->set, near->patch, at) <= 1;
 }
 
 uint32_t bake_surfel_at(const struct bake *bake, struct v3 position, uint32_t side)

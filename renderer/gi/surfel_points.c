@@ -7,6 +7,8 @@
 #include <stdlib.h>
 
 #define POINTS_MOST ((size_t)1 << 25)
+/* That lie on each other within a plane's tolerance. */
+#define SHEETS_MOST 8
 
 /* Heitz 2019, "A Low-Distortion Map Between Triangle and Square". */
 static void put_in(const struct scene *scene, size_t triangle, float x, float y,
@@ -95,6 +97,36 @@ static struct v3 position_of(const void *ctx, size_t i)
 	return ((const struct bake *)ctx)->points[i].position;
 }
 
+/*
+ * Whether a sheet closely above a point has beyond it another surface of the
+ * point's side, which is free: then the point is inside of a thin wall, and
+ * what lights it must not be heard on that surface.
+ */
+static bool is_covered(const struct bake *bake, const struct bake_point *p)
+{
+	const float tolerance = SURFEL_PLANE * bake->spacing;
+	struct v3 n = bake_normal(bake, p->side);
+	float gone = bake->offset, to[3];
+
+	v3_put(n, to);
+	for (int sheets = 0; sheets < SHEETS_MOST; sheets++) {
+		float from[3], along;
+		struct ray_hit hit;
+
+		v3_put(v3_ahead(p->position, n, gone), from);
+		if (!rays_nearest(bake->world.rays, from, to, 2 * tolerance, &hit))
+			return sheets > 0;
+		if (sheets > 0 && hit.distance > tolerance)
+			return true;
+		along = v3_dot(v3_of(hit.normal), n);
+		if (gone + hit.distance > tolerance ||
+		    !(bake->two_sided[hit.triangle] ? fabsf(along) > 0.5f : along > 0.5f))
+			return false;
+		gone += hit.distance + bake->offset;
+	}
+	return false;
+}
+
 /* Sight is looked for below what covers a point closely: a panel on a wall. */
 static void find_lifts(void *ctx, size_t begin, size_t end, int thread)
 {
@@ -112,6 +144,7 @@ static void find_lifts(void *ctx, size_t begin, size_t end, int thread)
 		p->lift = bake->lift;
 		if (rays_nearest(bake->world.rays, from, to, 2 * bake->lift, &hit))
 			p->lift = fmaxf(0.5f * hit.distance, bake->offset);
+		p->covered = p->lift < bake->lift && is_covered(bake, p);
 	}
 }
 

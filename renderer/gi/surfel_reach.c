@@ -90,8 +90,8 @@ static void look_around(void *ctx, size_t begin, size_t end, int thread)
 			most = whole * length;
 			struct v3 way = v3_add(v3_scale(v3_of(u), x / length),
 					       v3_scale(v3_of(v), y / length));
-			seen = look(bake, p, way, most);
-			surfel->reach[k] = (uint8_t)fmaxf(floorf(255 * seen / most), 1);
+			seen = p->covered ? 0 : look(bake, p, way, most);
+			surfel->reach[k] = (uint8_t)fmaxf(floorf(255 * seen / most), p->covered ? 1 : 2);
 		}
 	}
 }
@@ -138,7 +138,7 @@ static void listen(void *ctx, size_t begin, size_t end, int thread)
 		n = surfel_set_cell(bake->set, position, &members);
 		for (size_t k = 0; k < n && sum < HEARD_LEAST; k++)
 			sum += surfel_weight(bake->set, members[k], position, normal);
-		h->unheard[i] = sum < HEARD_LEAST;
+		h->unheard[i] = sum < HEARD_LEAST && !p->covered;
 	}
 }
 

@@ -43,7 +43,9 @@ struct surfel {
 	 * wall is met exactly. Direction k is (x, y) on |x| + |y| = 1 in the axes
 	 * of surfel_frame, at the k-th of 16 equal steps from (1, 0) by way of
 	 * (0, 1); the length |x| + |y| at its end, over sqrt(2) radius_m, is
-	 * reach / 255. 255: there is no end. Never 0.
+	 * reach / 255. 255: there is no end. Never 0. 1 in all: a surfel in a cavity so
+	 * thin that another surface of its side lies within its plane's tolerance (the
+	 * inside of a thin wall); it is not heard outside of it.
 	 */
 	uint8_t reach[SURFEL_SECTORS];
 };
@@ -156,7 +158,7 @@ float surfel_sight(const struct surfel_set *set, size_t i, const float position[
  * that its end is not seen, and is SURFEL_BEHIND up to SURFEL_SIGHT_MOST: what
  * stands closer to a wall than reach can tell hears something.
  */
-#define SURFEL_PLANE 0.25f
+#define SURFEL_PLANE 0.1f
 #define SURFEL_FADE_FROM 0.6f
 #define SURFEL_FADE 0.05f
 #define SURFEL_BEHIND 1e-4f

@@ -93,25 +93,71 @@ int surfel_cpu_settle(struct surfel_cpu *cpu)
 	return gathers;
 }
 
+/* As shaders/gi_surfels.glsl has them. */
+#define STIFF 0.01
+#define LEAST 0.1
+
+/* Sums of weights times 1, x, y; xx, xy, yy; and light times 1, x, y. */
+struct moments {
+	double m[3], mm[3], e[3][3];
+};
+
+static void add(struct moments *sums, const struct surfel_cpu *cpu, size_t i, double w, double x,
+		double y)
+{
+	const double by[3] = { 1, x, y }, squares[3] = { x * x, x * y, y * y };
+
+	for (int k = 0; k < 3; k++) {
+		sums->m[k] += w * by[k];
+		sums->mm[k] += w * squares[k];
+		for (int c = 0; c < 3; c++)
+			sums->e[k][c] += w * by[k] *
+					 (cpu->indirect[i][c] + (double)cpu->set->fixed_other[i][c]);
+	}
+}
+
+/* The plane through the surfels' light, weighed, at the point. */
+static void fit(const struct moments *s, double out[3])
+{
+	double x = s->m[1] / s->m[0], y = s->m[2] / s->m[0];
+	double xx = s->mm[0] / s->m[0] - x * x + STIFF, yy = s->mm[2] / s->m[0] - y * y + STIFF;
+	double xy = s->mm[1] / s->m[0] - x * y, inverse = 1 / (xx * yy - xy * xy);
+
+	for (int c = 0; c < 3; c++) {
+		double e = s->e[0][c] / s->m[0];
+		double gx = s->e[1][c] / s->m[0] - x * e, gy = s->e[2][c] / s->m[0] - y * e;
+
+		out[c] = fmax(e - (x * (yy * gx - xy * gy) + y * (xx * gy - xy * gx)) * inverse,
+			      LEAST * e);
+	}
+}
+
 int surfel_cpu_irradiance(const struct surfel_cpu *cpu, const float position[3],
 			  const float normal[3], double out[3])
 {
 	const struct surfel_set *set = cpu->set;
 	const uint32_t *members;
 	size_t count = surfel_set_cell(set, position, &members);
-	double weights = 0, sum[3] = { 0 };
+	struct moments sums = { { 0 }, { 0 }, { { 0 } } };
+	float u[3], v[3];
 	int heard = 0;
 
+	surfel_frame(normal, u, v);
 	for (size_t k = 0; k < count; k++) {
-		size_t i = members[k];
-		double w = (double)surfel_weight(set, i, position, normal);
+		double w = (double)surfel_weight(set, members[k], position, normal), x = 0, y = 0;
 
-		weights += w;
+		for (int i = 0; i < 3; i++) {
+			double d = (double)((position[i] - set->surfels[members[k]].position[i]) /
+					    set->radius_m);
+
+			x += d * (double)u[i];
+			y += d * (double)v[i];
+		}
 		heard += w > 0;
-		for (int c = 0; c < 3; c++)
-			sum[c] += w * (cpu->indirect[i][c] + (double)set->fixed_other[i][c]);
+		add(&sums, cpu, members[k], w, x, y);
 	}
-	for (int c = 0; c < 3; c++)
-		out[c] = weights > 0 ? sum[c] / weights : 0;
+	memset(out, 0, 3 * sizeof *out);
+	if (sums.m[0] > 0)
+		fit(&sums, out);
 	return heard;
 }
