@@ -9,6 +9,7 @@
 #include <sodium.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #define RECEIVE_MOST 256
 /* A master that waits for a slow node still speaks several times a second. */
@@ -53,6 +54,18 @@ static void window_closed(struct node *n)
 	loop_stop(n->loop);
 }
 
+/* On a software GL, what drawing costs whoever else uses the processors. */
+static void note_cpu(struct node_counts *counts)
+{
+	struct timespec ts;
+
+	if (clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &ts) < 0)
+		return;
+	counts->last_cpu_ns = (int64_t)ts.tv_sec * GR_NS_PER_S + ts.tv_nsec;
+	if (counts->swapped == 1)
+		counts->first_cpu_ns = counts->last_cpu_ns;
+}
+
 /* The swap itself comes first and alone; what it entails waits for receive to return. */
 static void swap(struct node *n, uint64_t frame)
 {
@@ -64,6 +77,7 @@ static void swap(struct node *n, uint64_t frame)
 	n->swapped = n->report = frame;
 	n->ready = 0;
 	n->counts.swapped++;
+	note_cpu(&n->counts);
 }
 
 static void refused(struct node *n, const char *reason, int64_t now_ns)

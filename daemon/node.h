@@ -42,6 +42,7 @@ struct node_counts {
 	uint64_t dropped; /* applied, but a newer frame came before it was ready */
 	uint64_t invalid; /* applied, but not drawable: values that make no sense together */
 	uint64_t mismatches, joined, lost, refused;
+	int64_t first_cpu_ns, last_cpu_ns; /* this process' time on processors at the first and the last swap */
 };
 
 struct node {

@@ -128,6 +128,9 @@ int node_write_json(const struct node *n, uint64_t pictures_saved, char *text, s
 	json_u64(&json, "joined", c->joined);
 	json_u64(&json, "lost", c->lost);
 	json_u64(&json, "refused", c->refused);
+	if (c->swapped > 1)
+		json_f64(&json, "cpu_ms_a_frame", (double)(c->last_cpu_ns - c->first_cpu_ns) * 1e-6 /
+						  (double)(c->swapped - 1));
 	json_u64(&json, "last_frame", n->swapped);
 	json_u64(&json, "pictures", pictures_saved);
 	json_u64(&json, "state_frame", n->state_frame);

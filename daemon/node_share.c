@@ -22,8 +22,8 @@ int node_share_init(struct node_share *share, struct renderer *renderer,
 	}
 	if (room > FDP_SHARE_MAX) {
 		gr_warning("gi.share = \"cluster\" has no effect: %zu bytes of light a frame are more "
-			   "than the %u that are sent; a larger gi.spacing makes fewer", room,
-			   FDP_SHARE_MAX);
+			   "than the %u that are sent; a larger gi.surfels.spacing_m makes fewer",
+			   room, FDP_SHARE_MAX);
 		return GR_OK;
 	}
 	share->size = room / 2;

@@ -160,8 +160,9 @@ enum fdp_verdict fdp_master_on_lack(struct fdp_master *m, unsigned node, const u
 
 		if (!fdp_slice_answers(slice, &lack, i))
 			continue;
-		piece_len = fdp_share_write(&m->share, lack.index, slice, i, fdp_outbox_body(&m->out),
-					    m->out.datagram_max - FDP_HEADER_BYTES);
+		piece_len =
+			fdp_share_write(&m->share, lack.index, slice, i, fdp_outbox_body(&m->out),
+					m->out.datagram_max - FDP_HEADER_BYTES);
 		if (!piece_len || m->lack_budget[node] < piece_len)
 			break;
 		m->lack_budget[node] -= piece_len;

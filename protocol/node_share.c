@@ -66,8 +66,8 @@ int fdp_node_slice(struct fdp_node *n, uint64_t frame, const uint8_t *bytes, siz
 	unsigned index;
 
 	(void)now_ns;
-	if (n->status != FDP_NODE_LIVE || !frame || frame != n->current.frame || !sharing(n, &index) ||
-	    n->share.count < 2 || frame <= n->slice_frame)
+	if (n->status != FDP_NODE_LIVE || !frame || frame != n->current.frame ||
+	    !sharing(n, &index) || n->share.count < 2 || frame <= n->slice_frame)
 		return GR_NOTHING;
 	slice = fdp_share_own(&n->share, index, frame, bytes, len,
 			      n->out.datagram_max - FDP_HEADER_BYTES - FDP_PIECE_HEAD);
@@ -157,12 +157,14 @@ void fdp_node_note_slices(struct fdp_node *n, const struct fdp_announce *a, int6
 		if (fdp_share_newest(&n->share, i) >= frame)
 			continue;
 		slice = fdp_share_place(&n->share, i, frame);
-		if (slice && fdp_share_ask(&n->share, i, slice, FDP_SLICE_PIECES_MAX, false, now_ns, &lack))
+		if (slice &&
+		    fdp_share_ask(&n->share, i, slice, FDP_SLICE_PIECES_MAX, false, now_ns, &lack))
 			send_lack(n, &lack);
 	}
 }
 
-/* Late is what should be used in `frame` and is not whole, or came too late for the frame before. */
+/* Late is what should be used in `frame` and is not whole, or came too late for the frame before.
+ */
 static void count_late(struct fdp_node *n, struct fdp_slice *slice, uint64_t frame)
 {
 	if (!slice->frame || slice->frame >= frame || slice->late || slice->given)
@@ -211,8 +213,10 @@ void fdp_node_share_tick(struct fdp_node *n, int64_t now_ns)
 			struct fdp_slice *slice = &n->share.slices[i][lane];
 			struct fdp_lack lack;
 
-			if (i != own && now_ns >= fdp_share_ask_at(&n->share, i, slice, n->retry_ns) &&
-			    fdp_share_ask(&n->share, i, slice, FDP_SLICE_PIECES_MAX, true, now_ns, &lack))
+			if (i != own &&
+			    now_ns >= fdp_share_ask_at(&n->share, i, slice, n->retry_ns) &&
+			    fdp_share_ask(&n->share, i, slice, FDP_SLICE_PIECES_MAX, true, now_ns,
+					  &lack))
 				send_lack(n, &lack);
 		}
 }

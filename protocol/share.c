@@ -89,7 +89,8 @@ int fdp_lack_decode(const uint8_t *bytes, size_t len, struct fdp_lack *out)
 		return GR_ERR_FORMAT;
 	memcpy(out->missing, bits, (out->count + 7u) / 8u);
 	/* No bits beyond the last piece. */
-	return out->count % 8 && out->missing[out->count / 8] >> out->count % 8 ? GR_ERR_FORMAT : GR_OK;
+	return out->count % 8 && out->missing[out->count / 8] >> out->count % 8 ? GR_ERR_FORMAT
+										: GR_OK;
 }
 
 int fdp_share_init(struct fdp_share *s, size_t room)
@@ -195,7 +196,8 @@ static void open_slice(struct fdp_slice *slice, uint32_t len, uint16_t chunk)
 	slice->chunk = chunk;
 	slice->pieces = (uint16_t)piece_count(len, chunk);
 	if (slice->asked)
-		slice->asked = slice->pieces; /* for everything, when only its existence was known */
+		slice->asked =
+			slice->pieces; /* for everything, when only its existence was known */
 }
 
 struct fdp_slice *fdp_share_own(struct fdp_share *s, unsigned index, uint64_t frame,
@@ -217,12 +219,11 @@ struct fdp_slice *fdp_share_own(struct fdp_share *s, unsigned index, uint64_t fr
 }
 
 enum fdp_fragment_result fdp_share_add(struct fdp_share *s, const struct fdp_piece *piece,
-				       const uint8_t *bytes, int64_t now_ns,
-				       struct fdp_slice **out)
+				       const uint8_t *bytes, int64_t now_ns, struct fdp_slice **out)
 {
 	const unsigned number = piece->at / piece->chunk;
-	const size_t len = piece->len - piece->at < piece->chunk ? piece->len - piece->at
-								  : piece->chunk;
+	const size_t len =
+		piece->len - piece->at < piece->chunk ? piece->len - piece->at : piece->chunk;
 	struct fdp_slice *slice;
 
 	*out = NULL;
@@ -273,7 +274,9 @@ bool fdp_share_ask(struct fdp_share *s, unsigned index, struct fdp_slice *slice,
 {
 	unsigned upto;
 
-	*out = (struct fdp_lack){ .since = s->since, .frame = slice->frame, .index = (uint16_t)index };
+	*out = (struct fdp_lack){ .since = s->since,
+				  .frame = slice->frame,
+				  .index = (uint16_t)index };
 	if (fdp_slice_whole(slice))
 		return false;
 	if (!slice->pieces) {
@@ -305,8 +308,12 @@ size_t fdp_share_write(const struct fdp_share *s, unsigned index, const struct f
 		       unsigned piece, uint8_t *body, size_t size)
 {
 	const struct fdp_piece head = {
-		.since = s->since, .frame = slice->frame, .index = (uint16_t)index,
-		.count = (uint16_t)s->count, .chunk = slice->chunk, .len = slice->len,
+		.since = s->since,
+		.frame = slice->frame,
+		.index = (uint16_t)index,
+		.count = (uint16_t)s->count,
+		.chunk = slice->chunk,
+		.len = slice->len,
 		.at = piece * slice->chunk,
 	};
 	const size_t len = head.len - head.at < head.chunk ? head.len - head.at : head.chunk;

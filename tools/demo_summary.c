@@ -169,7 +169,7 @@ static struct json_object *node_json(const struct summary *summary, size_t i)
 	static const char *const members[] = {
 		"applied", "drawn", "swapped", "mismatches", "joined", "skipped_eyes",
 		"shadow_updates", "gi_updates", "gl_errors", "nonfinite", "state_hash",
-		"light_hash", "share", "renderer", "platform", "width", "height", "pictures", "wire", "stages",
+		"light_hash", "share", "cpu_ms_a_frame", "renderer", "platform", "width", "height", "pictures", "wire", "stages",
 	};
 	const struct demo *demo = summary->demo;
 	const struct layout_node *node = &demo->layout->nodes[i];
