@@ -9,3 +9,4 @@ dist_doc_DATA += docs/light.md
 dist_doc_DATA += docs/reference.md
 dist_doc_DATA += docs/view.md
 dist_doc_DATA += docs/results.md docs/demo-room.png
+dist_doc_DATA += docs/comparing.md

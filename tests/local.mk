@@ -9,6 +9,7 @@ include $(top_srcdir)/tests/gl.mk
 include $(top_srcdir)/tests/gi.mk
 include $(top_srcdir)/tests/trace.mk
 include $(top_srcdir)/tests/view.mk
+include $(top_srcdir)/tests/folder.mk
 include $(top_srcdir)/tests/daemon.mk
 include $(top_srcdir)/tests/tools.mk
 include $(top_srcdir)/tests/packaging.mk
