@@ -225,14 +225,14 @@ static void accuracy(void **state)
 }
 
 /* Walls that all emit and reflect alike: E of what they reflect is rho / (1 - rho) pi L. */
-static void __attribute__((unused)) furnace(void **state)
+static void furnace(void **state)
 {
 	static struct truth_sample at[POINTS];
 	static float found[3 * POINTS];
 	const struct truth_spot spot = bench_spot();
 	struct room_builder b;
 	struct truth room;
-	double right = 0.5 / (1 - 0.5) * 3.14159265358979 * 2, worst = 0, mean;
+	double right = 0.5 / (1 - 0.5) * 3.14159265358979 * 2, worst, mean;
 	size_t count;
 
 	(void)state;
@@ -252,6 +252,7 @@ static void __attribute__((unused)) furnace(void **state)
 		begin_with(&s, inside, set, &spot, 0, probes);
 		frame(&s);
 		mean = mean_at(s.method, at, count, found);
+		worst = 0;
 		for (size_t k = 0; k < 3 * count; k++)
 			worst = fmax(worst, fabs((double)found[k] / right - 1));
 		printf("# furnace, %s: mean E off by %+.3f %%, worst point %.3f %%\n",
@@ -304,7 +305,8 @@ static void rooms_init(struct rooms *r, bool doorway)
 	for (size_t i = 0; i < count; i++) {
 		if (all[i].position[0] > (doorway ? 3.11f : 3.0101f))
 			r->dark[r->dark_count++] = all[i];
-		else if (all[i].position[0] < 2.89f)
+		else if (all[i].position[0] < (doorway ? 2.89f : 2.9901f) &&
+			 (doorway || all[i].position[0] < 2.98f || all[i].normal[0] < -0.5f))
 			r->lit[r->lit_count++] = all[i];
 	}
 	r->set = bake(r->scene, 0.2f, 256, 16, 12);
@@ -317,17 +319,25 @@ static void rooms_finish(struct rooms *r)
 	room_free(&r->scene);
 }
 
-static void __attribute__((unused)) closed_wall(void **state)
+static void closed_wall(void **state)
 {
+	static struct truth_sample wall[POINTS];
+	size_t walls = 0;
 	static float found[3 * POINTS];
 	static struct rooms r;
 
 	(void)state;
 	rooms_init(&r, false);
 	assert_true(r.dark_count > 80 && r.lit_count > 80);
+	/* the lit side of the wall must not take the dark inside of it for its own, either */
+	for (size_t i = 0; i < r.lit_count; i++)
+		if (r.lit[i].position[0] > 2.98f)
+			wall[walls++] = r.lit[i];
+	trace(&r.truth, 4000, wall, walls);
 	for (int probes = 0; probes < 2; probes++) {
 		struct setup s;
 		double lit, dark, worst = 0;
+		struct truth_error e;
 
 		begin_with(&s, r.scene, r.set, &r.truth.spot, 1, probes);
 		frame(&s);
@@ -335,8 +345,12 @@ static void __attribute__((unused)) closed_wall(void **state)
 		dark = mean_at(s.method, r.dark, r.dark_count, found);
 		for (size_t k = 0; k < 3 * r.dark_count; k++)
 			worst = fmax(worst, (double)found[k]);
-		printf("# closed 2 cm wall, %s: %.4f %% of the lit room's light behind it, worst point %.3f %%\n",
-		       probes ? "probes" : "surfels", 100 * dark / lit, 100 * worst / lit);
+		look(s.method, wall, walls, found);
+		e = truth_compare(wall, found, walls);
+		printf("# closed 2 cm wall, %s: %.5f %% of the lit room's light behind it, worst point %.4f "
+		       "%%; its lit side: bias %+.1f %%, nRMSE %.1f %% (%zu points, noise %.1f %%)\n",
+		       probes ? "probes" : "surfels", 100 * dark / lit, 100 * worst / lit,
+		       100 * e.bias, 100 * e.nrmse, walls, 100 * e.noise);
 		assert_true(dark / lit < (probes ? 1e-3 : 5e-4));
 		end(&s);
 	}
@@ -884,7 +898,8 @@ int main(void)
 {
 	const struct target_params params = { .kind = TARGET_HEADLESS, .width = 16, .height = 16, .gpu = -1 };
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(accuracy),	   cmocka_unit_test(doorway),
+		cmocka_unit_test(accuracy),	   cmocka_unit_test(furnace),
+		cmocka_unit_test(closed_wall),	   cmocka_unit_test(doorway),
 		cmocka_unit_test(lamp_switches),   cmocka_unit_test(two_lamps),
 		cmocka_unit_test(huge_intensity),  cmocka_unit_test(nan_is_reported),
 		cmocka_unit_test(moving_lamp),	   cmocka_unit_test(comes_to_rest),
