@@ -14,6 +14,8 @@ RENDERER_SOURCES += \
 	renderer/scene/brdf_read.c renderer/scene/brdf_read.h \
 	renderer/scene/brdf_sampling.c renderer/scene/brdf_table.c renderer/scene/brdf_table.h \
 	renderer/scene/environment.c renderer/scene/environment.h \
+	renderer/scene/environment_load.c renderer/scene/environment_private.h \
+	renderer/scene/environment_sample.c \
 	renderer/scene/gltf.c renderer/scene/gltf.h renderer/scene/gltf_pack.c \
 	renderer/scene/gltf_schema.c renderer/scene/import.c renderer/scene/import.h \
 	renderer/scene/import_geometry.c renderer/scene/import_image.c \
