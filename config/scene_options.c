@@ -128,7 +128,7 @@ static const struct option surfels_options[] = {
 };
 
 static const struct option gi_options[] = {
-	{ .key = "method", .type = OPTION_CHOICE, .choices = method_choices, .standard = "lpv",
+	{ .key = "method", .type = OPTION_CHOICE, .choices = method_choices, .standard = "auto",
 	  AT(scene_form_gi, method),
 	  .help = "how indirect light is computed; auto chooses from what the scene holds and from budget_ms" },
 	{ .key = "share", .type = OPTION_CHOICE, .choices = share_choices, .standard = "local",

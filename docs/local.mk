@@ -8,6 +8,7 @@ dist_doc_DATA += docs/models.md
 dist_doc_DATA += docs/light.md
 dist_doc_DATA += docs/surfels.md
 dist_doc_DATA += docs/reference.md
+dist_doc_DATA += docs/bench.md
 dist_doc_DATA += docs/view.md
 dist_doc_DATA += docs/results.md docs/demo-room.png
 dist_doc_DATA += docs/comparing.md

@@ -197,7 +197,7 @@ static void test_defaults(void **state)
 		assert_int_equal(diag.count, 0);
 		assert_float_equal(file->tone.gamma_end_to_end, table[i].end_to_end, 0);
 		assert_float_equal(file->tone.gamma_display, 2.2, 1e-6);
-		assert_int_equal(file->gi.method, SCENE_GI_LPV);
+		assert_int_equal(file->gi.method, SCENE_GI_AUTO);
 		assert_int_equal(file->gi.lattice, 32);
 		assert_float_equal(file->gi.albedo_override[0], -1, 0);
 		assert_float_equal(file->room.q[3], 1, 0);
