@@ -15,10 +15,10 @@
 
 const struct gi_costs gi_costs_usual = {
 	.lattice_frame = 2e6,
-	.lattice_cell_step = 140,
-	.surfel_frame = 5e5,
-	.surfel_tap = 40,
-	.surfel_link = 3,
+	.lattice_cell_step = 180,
+	.surfel_frame = 1e6,
+	.surfel_tap = 130,
+	.surfel_link = 10,
 };
 
 static const double surfel_counts[] = { 500, 1000, 2000, 4000, 8000, 16000, 32000, 64000 };

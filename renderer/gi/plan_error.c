@@ -1,29 +1,31 @@
 /*
- * How far each method's light is from the truth: fitted to the bench's table,
- *   grotto bench --fit scenes/cornell-spot.scene scenes/box-doorway.scene scenes/grotto.scene
- * (docs/bench.md; docs/results.md shows the table).
+ * How far each method's light is from the truth, fitted to the hardest of the
+ * bench's rooms (Cornell's spot: most of its light comes from one small bright
+ * place), with its mirror for what mirrors cost:
+ *   grotto bench --fit scenes/cornell-spot.scene scenes/cornell-mirror.scene
+ * In the box the errors are about half (docs/results.md).
  */
 #include "renderer/gi/plan.h"
 
 #include <math.h>
 
 /* Surfels: what no setting takes away, what their spacing and their links do. */
-#define SURFEL_FLOOR 0.018
-#define SURFEL_SPACING 0.55 /* per spacing over the side of a cube of the scene's area */
-#define SURFEL_LINKS 0.32   /* over the root of their number */
+#define SURFEL_FLOOR 0.017
+#define SURFEL_SPACING 1.07 /* per spacing over the side of a cube of the scene's area */
+#define SURFEL_LINKS 0.25   /* over the root of their number */
 /* A lamp that moves: taps are points of a patch, bounces come a gather at a time. */
-#define SURFEL_TAPS 0.06    /* over the root of their number */
-#define SURFEL_LAG 0.02     /* over the number of gathers */
+#define SURFEL_TAPS 0.02    /* over the root of their number */
+#define SURFEL_LAG 0.01     /* over the number of gathers */
 /* Probes: of a cell over the same side; their directions are few. */
-#define PROBE_FLOOR 0.04
-#define PROBE_CELL 0.75
+#define PROBE_FLOOR 0.08
+#define PROBE_CELL 1.42
 /* Lattices: two bands carry no beams, whatever the cells; finer ones carry less far. */
-#define LATTICE_FLOOR 0.21
-#define LATTICE_FINE 0.009  /* a cell along the longest side */
-#define LATTICE_COARSE 3.0  /* over their number */
-#define LATTICE_LAG 0.25    /* over the number of steps, a lamp moving */
-/* Mirrors, for what knows none: the share of light that is missed. */
-#define MIRROR_MISSED 0.8
+#define LATTICE_FLOOR 0.18
+#define LATTICE_FINE 0.0097 /* a cell along the longest side */
+#define LATTICE_COARSE 1.0 /* over their number */
+#define LATTICE_LAG 0.1 /* over the number of steps, a lamp moving */
+/* Mirrors, for what knows none: over their share of the area. */
+#define MIRROR_MISSED 2.7
 
 static double square(double v)
 {
