@@ -68,14 +68,24 @@ static struct v3 scatter(const struct vertex *at, struct v3 light, float *out_pd
 	return bsdf_eval(&at->bsdf, at->viewer, light, out_pdf);
 }
 
+/* A ray that is none makes the sample one that is not finite, which is counted. */
+static bool is_ray(struct path *path, const float from[3], const float along[3])
+{
+	path->light.rays++;
+	if (rays_valid(from, along))
+		return true;
+	path->light.total.x = NAN;
+	return false;
+}
+
 static bool open_along(struct path *path, struct v3 direction, float metres)
 {
 	float from[3], along[3];
 
 	v3_put(path->at.start, from);
 	v3_put(direction, along);
-	path->light.rays++;
-	return !rays_blocked_along(path->scene->world.rays, from, along, metres);
+	return is_ray(path, from, along) &&
+	       !rays_blocked_along(path->scene->world.rays, from, along, metres);
 }
 
 static bool open_to(struct path *path, struct v3 target)
@@ -336,7 +346,8 @@ static bool travel(struct path *path, struct v3 direction, float pdf)
 
 	v3_put(path->at.start, from);
 	v3_put(direction, along);
-	path->light.rays++;
+	if (!is_ray(path, from, along))
+		return false;
 	met = rays_nearest(scene->world.rays, from, along, INFINITY, &hit);
 	distance = met ? hit.distance : INFINITY;
 	if (scene->medium.extinction > 0.0f)
@@ -429,7 +440,8 @@ static bool leave_eye(struct path *path, struct v3 direction)
 
 	v3_put(path->at.start, from);
 	v3_put(direction, along);
-	path->light.rays++;
+	if (!is_ray(path, from, along))
+		return false;
 	met = rays_nearest_drawn(scene->world.rays, from, along, INFINITY, &hit);
 	if (scene->medium.extinction > 0.0f)
 		pair_of(path, PAIR_WAY, u);

@@ -132,9 +132,12 @@ void rays_destroy(struct rays **rays)
 	*rays = NULL;
 }
 
-static void start(struct RTCRay *ray, const float origin[3], const float direction[3],
+/* false: not a ray that Embree may be given; builds of it with assertions end the process. */
+static bool start(struct RTCRay *ray, const float origin[3], const float direction[3],
 		  float max_distance)
 {
+	if (!rays_valid(origin, direction) || !(max_distance >= 0.0f))
+		return false;
 	*ray = (struct RTCRay){
 		.org_x = origin[0],
 		.org_y = origin[1],
@@ -145,6 +148,7 @@ static void start(struct RTCRay *ray, const float origin[3], const float directi
 		.tfar = max_distance,
 		.mask = ~0u,
 	};
+	return true;
 }
 
 static bool nearest(const struct rays *rays, struct RTCIntersectContext *context,
@@ -154,7 +158,8 @@ static bool nearest(const struct rays *rays, struct RTCIntersectContext *context
 	struct RTCRayHit q;
 	float scale, length, n[3];
 
-	start(&q.ray, origin, direction, max_distance);
+	if (!start(&q.ray, origin, direction, max_distance))
+		return false;
 	q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
 	q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 	rtcIntersect1(rays->scene, context, &q);
@@ -213,7 +218,8 @@ bool rays_blocked_along(const struct rays *rays, const float origin[3], const fl
 	struct RTCIntersectContext context;
 	struct RTCRay ray;
 
-	start(&ray, origin, direction, max_distance);
+	if (!start(&ray, origin, direction, max_distance))
+		return false;
 	rtcInitIntersectContext(&context);
 	rtcOccluded1(rays->scene, &context, &ray);
 	return ray.tfar < 0.0f;

@@ -10,6 +10,7 @@
 
 #include "renderer/scene/scene.h"
 
+#include <math.h>
 #include <stdbool.h>
 
 struct rays;
@@ -25,6 +26,16 @@ struct ray_hit {
 	float u, v;
 	float normal[3]; /* geometric, unit, front side */
 };
+/* Largest coordinate of an origin or a direction; a ray beyond, or with NaN, meets nothing. */
+#define RAYS_MOST 1e18f
+static inline bool rays_valid(const float origin[3], const float direction[3])
+{
+	bool valid = true;
+
+	for (int i = 0; i < 3; i++)
+		valid = valid && fabsf(origin[i]) <= RAYS_MOST && fabsf(direction[i]) <= RAYS_MOST;
+	return valid;
+}
 bool rays_nearest(const struct rays *rays, const float origin[3], const float direction[3],
 		  float max_distance, struct ray_hit *out);
 /* As the renderer draws: what shows its back and is one-sided is not there. */

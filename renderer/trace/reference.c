@@ -86,7 +86,7 @@ static bool view_ok(const struct reference_view *view)
 	const float *parts[] = { view->eye, view->corner, view->right, view->down };
 
 	for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
-		if (!v3_finite(v3_of(parts[i])))
+		if (!v3_finite(v3_of(parts[i])) || v3_widest(v3_of(parts[i])) > RAYS_MOST)
 			return false;
 	return view->width > 0 && view->height > 0 && view->width <= IMAGE_MAX_SIDE &&
 	       view->height <= IMAGE_MAX_SIDE &&
@@ -166,7 +166,9 @@ static bool points_ok(const struct reference_point *points, size_t count)
 	for (size_t i = 0; i < count; i++) {
 		struct v3 n = v3_of(points[i].normal);
 
-		if (!v3_finite(v3_of(points[i].position)) || !(fabsf(v3_dot(n, n) - 1.0f) < 1e-3f))
+		if (!v3_finite(v3_of(points[i].position)) || !v3_finite(n) ||
+		    v3_widest(v3_of(points[i].position)) > RAYS_MOST ||
+		    !(fabsf(v3_dot(n, n) - 1.0f) < 1e-3f))
 			return false;
 	}
 	return true;

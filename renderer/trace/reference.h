@@ -131,7 +131,7 @@ struct reference_point {
 	double total[3], indirect[3]; /* W/m^2 per band; indirect: all that was reflected at least once */
 	double total_error[3], indirect_error[3]; /* standard errors */
 };
-/* As reference_render. Samples of a point depend on the seed and its place in the array. */
+/* As reference_render; positions beyond RAYS_MOST are out of range. Samples of a point depend on the seed and its place in the array. */
 int reference_irradiance(struct reference *reference, const struct reference_params *params,
 			 struct reference_point *points, size_t count, uint64_t *out_nonfinite);
 

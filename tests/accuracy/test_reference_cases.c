@@ -482,6 +482,39 @@ static void coincident_faces(void **state)
 	closed_end(&c);
 }
 
+/* Triangles that import would have dropped do no harm when they come all the same. */
+static void unusable_triangles(void **state)
+{
+	struct quad quads[8];
+	const struct scene_material m[2] = { material(0.5f, 0), material(0, 1) };
+	const struct reference_params p = { .seed = 2, .samples = 256, .max_bounces = 64 };
+	struct reference_point points[2];
+	struct closed c;
+
+	(void)state;
+	for (int k = 0; k < 2; k++) {
+		closed_cube(quads, 0, 1);
+		quads[3].material = 1;
+		/* of no area, and with a corner nowhere: both would emit */
+		quads[6] = (struct quad){ 1, { { 0, 0, 0 }, { 0.5f, 0, 0 }, { 0.2f, 0, 0 }, { 0, 0, 0 } } };
+		quads[7] = (struct quad){ 1, { { 0, 0, 0 }, { NAN, 0, 0 }, { 0, INFINITY, 0 }, { 0, 0, 1 } } };
+		points[k] = (struct reference_point){ .position = { 0.3f, -1, 0.1f }, .normal = { 0, 1, 0 } };
+		uint64_t nonfinite;
+
+		closed_start(&c, quads, k == 0 ? 6 : 8, m, 2);
+		for (int i = 0; i < 3; i++) {
+			c.scene.min[i] = -1;
+			c.scene.max[i] = 1;
+		}
+		closed_again(&c);
+		assert_int_equal(reference_irradiance(c.reference, &p, &points[k], 1, &nonfinite), GR_OK);
+		assert_int_equal(nonfinite, 0);
+		closed_end(&c);
+	}
+	assert_true(points[0].total[1] > 0);
+	assert_true(fabs(points[1].total[1] / points[0].total[1] - 1) < 1e-5);
+}
+
 /* --- against the bench's own tracer of paths, which shares nothing with this one but Embree --- */
 
 static void room_as_traced_before(void **state)
@@ -557,6 +590,7 @@ int main(void)
 		cmocka_unit_test(bright_and_dark),
 		cmocka_unit_test(nothing_there),
 		cmocka_unit_test(coincident_faces),
+		cmocka_unit_test(unusable_triangles),
 		cmocka_unit_test(room_as_traced_before),
 	};
 
