@@ -314,7 +314,7 @@ static void draw_legend(const struct drawing *d)
 static void draw(struct drawing *d)
 {
 	const struct svg_font title = { 16, INK, SVG_START, 1, 0 };
-	const struct svg_font subtitle = { 12, FAINT, SVG_START, 0, 0 };
+	const struct svg_font subtitle = { 11.5, FAINT, SVG_START, 0, 0 };
 	const struct svg_font nothing = { 14, FAINT, SVG_MIDDLE, 0, 0 };
 	const struct plot *plot = d->plot;
 

@@ -49,10 +49,10 @@ int bench_report_plot(FILE *out, const struct bench_report *report)
 		plot.count++;
 	}
 	snprintf(title, sizeof title, "%s: error of the indirect light over its cost", report->scene);
-	snprintf(subtitle, sizeof subtitle, "%s; median and 10th to 90th percentile of %d frames, %s; truth: %zu points, noise %.1f %%",
+	snprintf(subtitle, sizeof subtitle, "%s; medians and 10..90 %% of %d frames, %s; noise of the truth %.1f %%",
 		 report->renderer, view->frames,
 		 report->count && report->results[0].moves ? "a lamp moving" : "the air changing",
-		 view->truth->count, 100 * view->truth->noise);
+		 100 * view->truth->noise);
 	snprintf(cost, sizeof cost, "what it adds to a frame of %d × %d pixels, ms", view->camera.pixels[0],
 		 view->camera.pixels[1]);
 	return plot_write(out, &plot);
