@@ -64,7 +64,7 @@ static void clean(const char *device, char out[COSTS_DEVICE_MAX])
 {
 	size_t n = 0;
 
-	for (; device[n] && n < COSTS_DEVICE_MAX - 1; n++)
+	for (; n < COSTS_DEVICE_MAX - 1 && device[n]; n++)
 		out[n] = device[n] >= 0x20 && device[n] < 0x7f ? device[n] : '?';
 	out[n] = '\0';
 }

@@ -232,7 +232,7 @@ static double noise_of(const struct bench_truth *truth)
 int bench_truth_get(struct bench_truth *out, const char *folder, const uint8_t key[32],
 		    const struct bench_points *points, const struct bench_truth_source *source)
 {
-	struct paths paths;
+	struct paths paths = { { 0 }, { 0 }, { 0 } };
 	int result = GR_OK;
 
 	*out = (struct bench_truth){ .count = points->count };
