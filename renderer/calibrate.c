@@ -168,7 +168,7 @@ int calibrate(struct gi_costs *out, struct target *target)
 	struct scene_file file;
 	struct scene *scene;
 	struct gi_facts facts;
-	double ns[PARTS];
+	double ns[PARTS] = { 0 };
 	int part = 0, result = calibrate_room(&scene);
 
 	for (; part < PARTS && result == GR_OK && (double)spent < CALIBRATE_SECONDS * 1e9; part++) {
