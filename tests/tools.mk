@@ -52,6 +52,7 @@ EXTRA_DIST += \
 	tests/data/bad/truncated.gltf \
 	tests/data/bad/two-faults.scene \
 	tests/data/bad/unknown-key.cave \
+	tests/data/bad/unknown-material.scene \
 	tests/data/bad/unknown-method.scene \
 	tests/data/bad/wrong-type.cave
 
