@@ -88,7 +88,7 @@ static size_t unfolded(int x, int y)
 		y = y < 0 ? 0 : SIDE - 1;
 		x = SIDE - 1 - x;
 	}
-	return (size_t)(y * SIDE + x);
+	return (size_t)y * SIDE + (size_t)x;
 }
 
 static int upload_distance(struct surfels *s, const struct surfel_probes *from)
@@ -188,12 +188,12 @@ void surfels_probes_finish(struct surfels *s)
 void surfels_probes_gather(struct surfels *s)
 {
 	struct surfels_probes *p = &s->probes;
-	const struct surfels_buffer *const buffers[] = { &p->links, &p->basis, &p->fixed, &p->light };
+	const struct surfels_buffer *const buffers[4] = { &p->links, &p->basis, &p->fixed, &p->light };
 	float sigma = s->absorption + s->scattering;
 
 	if (!p->program)
 		return;
-	for (unsigned i = 0; i < sizeof buffers / sizeof *buffers; i++)
+	for (unsigned i = 0; i < 4; i++)
 		glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SURFELS_BINDING_PARTS + i,
 				 buffers[i]->buffer);
 	glBindBufferBase(GL_UNIFORM_BUFFER, SURFELS_BINDING_BLOCK, p->block);

@@ -32,8 +32,9 @@ static struct surfels *surfels_of(struct gi_method *method)
 static struct surfels_run run_of(size_t surfels, unsigned index, unsigned count)
 {
 	uint64_t groups = (surfels + SURFELS_GROUP - 1) / SURFELS_GROUP;
-	uint64_t first = groups * index / count * SURFELS_GROUP;
-	uint64_t last = groups * (index + 1) / count * SURFELS_GROUP;
+	uint64_t slices = count > 0 ? count : 1;
+	uint64_t first = groups * index / slices * SURFELS_GROUP;
+	uint64_t last = groups * (index + 1) / slices * SURFELS_GROUP;
 
 	return (struct surfels_run){ (uint32_t)first, (uint32_t)(last < surfels ? last : surfels) };
 }

@@ -80,19 +80,19 @@ static size_t fit(const struct surfel_set *set, size_t i, struct around out[AROU
 int surfels_smooth_init(struct surfels *s, const struct surfel_set *set)
 {
 	uint32_t *first = calloc(set->count + 1, sizeof *first);
-	struct around *all = NULL, one[AROUND_MOST];
-	size_t room = 0;
+	size_t room = 16 * (set->count + AROUND_MOST);
+	struct around *all = malloc(room * sizeof *all), one[AROUND_MOST];
 	int result = program_create_compute(&s->smooth, "surfel_smooth.comp", NULL);
 
-	if (!first)
-		return GR_ERR_NOMEM;
+	if (!first || !all)
+		result = result == GR_OK ? GR_ERR_NOMEM : result;
 	for (size_t i = 0; i < set->count && result == GR_OK; i++) {
 		size_t count = fit(set, i, one);
 
 		if (first[i] + count > room) {
 			struct around *more;
 
-			room = 2 * room + 16 * (set->count + AROUND_MOST);
+			room *= 2;
 			more = realloc(all, room * sizeof *all);
 			if (!more) {
 				result = GR_ERR_NOMEM;

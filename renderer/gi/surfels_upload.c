@@ -223,14 +223,14 @@ static int settle_gathers(const struct surfel_set *set, int *out)
 int surfels_upload(struct surfels *s, const struct surfel_set *set)
 {
 	size_t colours = (set->count + 1) * 4 * sizeof(float);
-	struct surfels_buffer *const work[] = { &s->direct, &s->found, &s->shown, &s->radiosity[0],
+	struct surfels_buffer *const work[5] = { &s->direct, &s->found, &s->shown, &s->radiosity[0],
 						&s->radiosity[1] };
-	int result = settle_gathers(set, &s->settle_gathers);
+	int result = surfels_storage(s, &s->texels, "surfels", GL_RGBA32UI,
+				     set->count * sizeof *set->surfels, set->surfels);
 
 	_Static_assert(sizeof(struct surfel) == 32, "two texels");
 	if (result == GR_OK)
-		result = surfels_storage(s, &s->texels, "surfels", GL_RGBA32UI,
-					 set->count * sizeof *set->surfels, set->surfels);
+		result = settle_gathers(set, &s->settle_gathers);
 	if (result == GR_OK)
 		result = upload_links(s, set);
 	if (result == GR_OK)
@@ -244,7 +244,7 @@ int surfels_upload(struct surfels *s, const struct surfel_set *set)
 	if (result == GR_OK)
 		result = upload_colours(s, &s->other, "fixed light",
 					(const float(*)[3])set->fixed_other, set->count);
-	for (size_t i = 0; i < sizeof work / sizeof *work && result == GR_OK; i++)
+	for (size_t i = 0; i < 5 && result == GR_OK; i++)
 		result = surfels_storage(s, work[i], "light", GL_RGBA32F, colours, NULL);
 	if (result == GR_OK)
 		result = upload_grid(s, set);
@@ -255,13 +255,13 @@ int surfels_upload(struct surfels *s, const struct surfel_set *set)
 
 void surfels_upload_finish(struct surfels *s)
 {
-	struct surfels_buffer *const all[] = {
+	struct surfels_buffer *const all[14] = {
 		&s->texels, &s->links, &s->taps,  &s->albedo,	    &s->emissive,
 		&s->other,  &s->direct, &s->found, &s->shown,	    &s->radiosity[0],
 		&s->radiosity[1], &s->first, &s->members, &s->keys,
 	};
 
-	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+	for (size_t i = 0; i < 14; i++)
 		surfels_storage_finish(all[i]);
 	glDeleteBuffers(1, &s->block);
 }

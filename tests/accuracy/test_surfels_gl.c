@@ -588,6 +588,25 @@ static void absorbing_medium(void **state)
 	end(&s);
 }
 
+/* Sets that cannot be are refused before anything of them is read. */
+static void refused_sets(void **state)
+{
+	const struct surfels_params params = SURFELS_PARAMS_DEFAULT;
+	struct surfel_set set = { .spacing_m = 1, .radius_m = 2, .links_each = 16, .taps_each = 16 };
+	struct gi_method *method;
+
+	(void)state;
+	gr_log_init("test_surfels_gl", GR_LOG_ERROR);
+	assert_int_equal(gi_surfels_create(&method, &set, &params), GR_ERR_RANGE);
+	set.count = (size_t)1 << 28; /* 8 GiB of surfels */
+	assert_int_equal(gi_surfels_create(&method, &set, &params), GR_ERR_RANGE);
+	set.count = SIZE_MAX / 64;
+	assert_int_equal(gi_surfels_create(&method, &set, &params), GR_ERR_RANGE);
+	assert_null(method);
+	assert_int_equal(glGetError(), GL_NO_ERROR);
+	gr_log_init("test_surfels_gl", GR_LOG_WARNING);
+}
+
 /* --- equal nodes --- */
 
 static void same_bits(void **state)
@@ -904,6 +923,7 @@ int main(void)
 		cmocka_unit_test(huge_intensity),  cmocka_unit_test(nan_is_reported),
 		cmocka_unit_test(moving_lamp),	   cmocka_unit_test(comes_to_rest),
 		cmocka_unit_test(absorbing_medium), cmocka_unit_test(same_bits),
+		cmocka_unit_test(refused_sets),
 		cmocka_unit_test(shared_work),	   cmocka_unit_test(lost_slices),
 		cmocka_unit_test(hostile_slices),
 	};
