@@ -69,7 +69,7 @@ static int part_of(const char *what, size_t bytes_each, uint32_t *out)
 	GLint64 most = 0;
 
 	glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
-	size_t groups = (size_t)most / (bytes_each * SURFELS_GROUP);
+	size_t groups = bytes_each > 0 ? (size_t)most / (bytes_each * SURFELS_GROUP) : 0;
 
 	if (groups == 0) {
 		gr_error("surfels: %s of %d surfels are %zu bytes, this GPU's storage blocks hold %lld",
