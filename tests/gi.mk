@@ -56,3 +56,10 @@ TESTS += tests/unit/test_calibrate
 tests_unit_test_calibrate_SOURCES = tests/unit/test_calibrate.c tests/unit/unit.h tests/unit/gl.h
 tests_unit_test_calibrate_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
 tests_unit_test_calibrate_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm
+
+check_PROGRAMS += tests/unit/test_surfel_bake
+TESTS += tests/unit/test_surfel_bake
+tests_unit_test_surfel_bake_SOURCES = tests/unit/test_surfel_bake.c tests/unit/unit.h \
+	$(LATTICE_ROOM_SOURCES)
+tests_unit_test_surfel_bake_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
+tests_unit_test_surfel_bake_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS)
