@@ -241,6 +241,13 @@ static void finish(struct bake *bake)
 int surfel_bake(struct surfel_set **out, const struct scene *scene, const struct scene_file *file,
 		const struct surfel_bake_params *params, struct gr_diag *diag)
 {
+	return bake_then(out, scene, file, params, diag, NULL, NULL);
+}
+
+int bake_then(struct surfel_set **out, const struct scene *scene, const struct scene_file *file,
+	      const struct surfel_bake_params *params, struct gr_diag *diag,
+	      void (*then)(const struct bake *bake, void *ctx), void *ctx)
+{
 	struct bake bake = { .scene = scene, .file = file, .params = *params, .diag = diag };
 	int result = check_params(params, diag);
 
@@ -257,6 +264,8 @@ int surfel_bake(struct surfel_set **out, const struct scene *scene, const struct
 	if (result == GR_OK) {
 		bake.set->seconds = seconds_since(bake.started_ns);
 		bake.set->threads = bake.threads;
+		if (then && bake.set->count > 0)
+			then(&bake, ctx);
 		*out = bake.set;
 		bake.set = NULL;
 	}

@@ -137,8 +137,10 @@ void bake_follow(const struct bake *bake, struct v3 from, struct v3 way, uint64_
 struct v3 bake_cosine(struct v3 normal, const float u[2]);
 /* The surfel whose patch holds a point of a side; SURFEL_NONE: of none. */
 uint32_t bake_surfel_at(const struct bake *bake, struct v3 position, uint32_t side);
-/* surfel_links.c */
+/* surfel_links.c: link j of surfel i starts so; all of a surfel's links, and what mirrors show it. */
 int bake_links(struct bake *bake);
+void bake_link_ray(const struct bake *bake, size_t i, uint32_t j, struct v3 *from, struct v3 *way);
+void bake_link_surfel(const struct bake *bake, size_t i, uint32_t *links, float light[3]);
 /* surfel_fixed.c; after the links, which bring what mirrors show. */
 int bake_fixed(struct bake *bake);
 /* surfel_probes.c */
@@ -151,6 +153,11 @@ void bake_cells_finish(struct bake_cells *cells);
 /* Items of the cell `step` cells away from that of a position. */
 size_t bake_cells_at(const struct bake_cells *cells, struct v3 position, const int step[3],
 		     const uint32_t **out_items);
+
+/* As surfel_bake; `then` sees the baker before it goes: for measuring. NULL: none. */
+int bake_then(struct surfel_set **out, const struct scene *scene, const struct scene_file *file,
+	      const struct surfel_bake_params *params, struct gr_diag *diag,
+	      void (*then)(const struct bake *bake, void *ctx), void *ctx);
 
 /* Says how much of the stage is done; false: stop. */
 bool bake_told(struct bake *bake, double done);

@@ -93,32 +93,45 @@ struct v3 bake_cosine(struct v3 normal, const float u[2])
 						  sqrtf(fmaxf(1 - u[0], 0)) });
 }
 
+void bake_link_ray(const struct bake *bake, size_t i, uint32_t j, struct v3 *from, struct v3 *way)
+{
+	const struct bake_point *p;
+	struct v3 n;
+	float u[3];
+
+	sobol_point(random_start(bake->params.seed, i), j, u);
+	p = &bake->points[bake_patch_point(bake, i, u[2])];
+	n = bake_normal(bake, p->side);
+	*from = v3_ahead(p->position, n, bake->offset);
+	*way = bake_cosine(n, u);
+}
+
+void bake_link_surfel(const struct bake *bake, size_t i, uint32_t *links, float light[3])
+{
+	const uint32_t count = bake->set->links_each;
+	const float share = TRACE_PI / (float)count;
+	uint64_t key = random_start(bake->params.seed, i);
+
+	for (uint32_t j = 0; j < count; j++) {
+		struct bake_end found;
+		struct v3 from, way;
+
+		bake_link_ray(bake, i, j, &from, &way);
+		bake_follow(bake, from, way, random_mix(key + j), &found);
+		links[j] = found.surfel;
+		for (int c = 0; c < 3; c++)
+			light[c] += share * found.light[c];
+	}
+}
+
 static void link_all(void *ctx, size_t begin, size_t end, int thread)
 {
 	struct bake *bake = ctx;
 	struct surfel_set *set = bake->set;
-	const float share = TRACE_PI / (float)set->links_each;
 
 	(void)thread;
-	for (size_t i = begin; i < end; i++) {
-		uint64_t key = random_start(bake->params.seed, i);
-
-		for (uint32_t j = 0; j < set->links_each; j++) {
-			const struct bake_point *p;
-			struct bake_end found;
-			struct v3 n;
-			float u[3];
-
-			sobol_point(key, j, u);
-			p = &bake->points[bake_patch_point(bake, i, u[2])];
-			n = bake_normal(bake, p->side);
-			bake_follow(bake, v3_ahead(p->position, n, bake->offset), bake_cosine(n, u),
-				    random_mix(key + j), &found);
-			set->links[i * set->links_each + j] = found.surfel;
-			for (int c = 0; c < 3; c++)
-				set->fixed_other[i][c] += share * found.light[c];
-		}
-	}
+	for (size_t i = begin; i < end; i++)
+		bake_link_surfel(bake, i, set->links + i * set->links_each, set->fixed_other[i]);
 }
 
 int bake_links(struct bake *bake)

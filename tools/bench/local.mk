@@ -32,3 +32,9 @@ tools_libgbench_a_SOURCES = \
 	tools/bench/scenes.c tools/bench/scenes.h
 tools_libgbench_a_CPPFLAGS = $(AM_CPPFLAGS)
 tools_libgbench_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(JSONC_CFLAGS)
+
+# How long surfels take to bake, and their rays beside a bare Embree loop.
+pkglibexec_PROGRAMS += tools/bench-bake
+tools_bench_bake_SOURCES = tools/bench/bake.c tools/bench/atrium.c tools/bench/atrium.h $(LATTICE_ROOM_SOURCES)
+tools_bench_bake_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS)
+tools_bench_bake_LDADD = $(RENDERER_LIBS)

@@ -1,0 +1,210 @@
+/*
+ * How fast surfels are baked: whole bakes of a generated atrium or of a model,
+ * and the links' rays beside a bare Embree loop over the same rays, in turns,
+ * since a machine is rarely alone.
+ */
+#include "base/clock.h"
+#include "base/result.h"
+#include "renderer/gi/surfel_bake_private.h"
+#include "renderer/scene/import.h"
+#include "tools/bench/atrium.h"
+#include "tools/bench/room.h"
+
+#include <embree3/rtcore.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TURNS 5
+#define RAYS_MOST 1000000
+#define PORTION 8 /* surfels, as the baker has them */
+
+struct race {
+	const struct bake *bake;
+	size_t every, surfels; /* each so-manieth surfel, and how many these are */
+	struct RTCRayHit *rays;
+	RTCScene scene;
+	uint32_t *links;
+};
+
+static void run_baker(void *ctx, size_t begin, size_t end, int thread)
+{
+	const struct race *r = ctx;
+	uint32_t each = r->bake->set->links_each;
+
+	(void)thread;
+	for (size_t i = begin; i < end; i++) {
+		float light[3] = { 0 };
+
+		bake_link_surfel(r->bake, i * r->every, r->links + i * each, light);
+	}
+}
+
+static void run_bare(void *ctx, size_t begin, size_t end, int thread)
+{
+	const struct race *r = ctx;
+	uint32_t each = r->bake->set->links_each;
+	struct RTCIntersectContext context;
+
+	(void)thread;
+	rtcInitIntersectContext(&context);
+	for (size_t k = begin * each; k < end * each; k++)
+		rtcIntersect1(r->scene, &context, &r->rays[k]);
+}
+
+static void fill_rays(struct race *r)
+{
+	uint32_t each = r->bake->set->links_each;
+
+	for (size_t i = 0; i < r->surfels; i++)
+		for (uint32_t j = 0; j < each; j++) {
+			struct RTCRayHit *q = &r->rays[i * each + j];
+			struct v3 from, way;
+
+			bake_link_ray(r->bake, i * r->every, j, &from, &way);
+			*q = (struct RTCRayHit){ .ray = { .org_x = from.x, .org_y = from.y, .org_z = from.z,
+							  .dir_x = way.x, .dir_y = way.y, .dir_z = way.z,
+							  .tfar = INFINITY, .mask = ~0u },
+						 .hit = { .geomID = RTC_INVALID_GEOMETRY_ID } };
+		}
+}
+
+static RTCScene bare_scene(RTCDevice device, const struct scene *scene)
+{
+	RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+	RTCScene bare = rtcNewScene(device);
+	float *at = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+					    3 * sizeof(float), scene->vertex_count);
+	void *triangles = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+						  3 * sizeof(uint32_t), scene->index_count / 3);
+
+	for (size_t i = 0; i < scene->vertex_count; i++)
+		memcpy(at + 3 * i, scene->vertices[i].position, 3 * sizeof *at);
+	memcpy(triangles, scene->indices, scene->index_count / 3 * 3 * sizeof(uint32_t));
+	rtcCommitGeometry(mesh);
+	rtcAttachGeometry(bare, mesh);
+	rtcReleaseGeometry(mesh);
+	rtcSetSceneFlags(bare, RTC_SCENE_FLAG_ROBUST);
+	rtcCommitScene(bare);
+	return bare;
+}
+
+static double seconds(struct race *r, crew_work work)
+{
+	int64_t start = gr_clock_now(&gr_clock_monotonic);
+
+	crew_run(r->bake->threads, r->surfels, PORTION, work, r, NULL, NULL);
+	return (double)(gr_clock_now(&gr_clock_monotonic) - start) * 1e-9;
+}
+
+static int by_value(const void *a, const void *b)
+{
+	const double *x = a, *y = b;
+
+	return *x < *y ? -1 : *x > *y;
+}
+
+static void race(const struct bake *bake, void *ctx)
+{
+	uint32_t each = bake->set->links_each;
+	struct race r = { .bake = bake };
+	double baker[TURNS], bare[TURNS], share[TURNS], count;
+	RTCDevice device = rtcNewDevice("set_affinity=0");
+
+	(void)ctx;
+	r.every = 1 + bake->set->count * each / RAYS_MOST;
+	r.surfels = (bake->set->count + r.every - 1) / r.every;
+	r.rays = calloc(r.surfels * each, sizeof *r.rays);
+	r.links = calloc(r.surfels * each, sizeof *r.links);
+	if (!r.rays || !r.links || !device)
+		abort();
+	r.scene = bare_scene(device, bake->scene);
+	count = (double)(r.surfels * each);
+	for (int turn = 0; turn < TURNS; turn++) {
+		fill_rays(&r);
+		bare[turn] = count / seconds(&r, run_bare);
+		baker[turn] = count / seconds(&r, run_baker);
+		share[turn] = baker[turn] / bare[turn];
+	}
+	qsort(baker, TURNS, sizeof *baker, by_value);
+	qsort(bare, TURNS, sizeof *bare, by_value);
+	qsort(share, TURNS, sizeof *share, by_value);
+	printf("  links %.3f million rays/s, bare Embree over the same %.0f rays %.3f: %.0f %% (%.0f..%.0f in %d turns)\n",
+	       baker[TURNS / 2] * 1e-6, count, bare[TURNS / 2] * 1e-6, 100 * share[TURNS / 2],
+	       100 * share[0], 100 * share[TURNS - 1], TURNS);
+	rtcReleaseScene(r.scene);
+	rtcReleaseDevice(device);
+	free(r.rays);
+	free(r.links);
+}
+
+static int measure(const struct scene *scene)
+{
+	const struct surfel_bake_params params = SURFEL_BAKE_PARAMS;
+	struct gr_diag diag = { 0 };
+	struct surfel_set *set;
+	int result = bake_then(&set, scene, NULL, &params, &diag, race, NULL);
+
+	gr_diag_log(&diag);
+	gr_diag_finish(&diag);
+	if (result != GR_OK)
+		return result;
+	printf("%zu triangles: %zu surfels of %.3g m, %zu probes: %.1f s on %d threads (links %.1f s), %.1f MB\n",
+	       scene->index_count / 3, set->count, (double)set->spacing_m, set->probes.count,
+	       set->seconds, set->threads, set->ray_seconds, (double)surfel_set_bytes(set) * 1e-6);
+	surfel_set_destroy(&set);
+	return GR_OK;
+}
+
+static int measure_model(const char *path)
+{
+	const struct import_options options = { .scale = 1, .emission_scale = 1 };
+	struct gr_diag diag = { 0 };
+	struct scene *scene;
+	int result = import_model(path, &options, &scene, &diag);
+
+	gr_diag_log(&diag);
+	gr_diag_finish(&diag);
+	if (result == GR_OK)
+		result = measure(scene);
+	scene_destroy(&scene);
+	return result;
+}
+
+static int measure_atrium(size_t triangles)
+{
+	struct scene *scene = atrium_build(triangles);
+	int result = measure(scene);
+
+	room_free(&scene);
+	return result;
+}
+
+int main(int argc, char **argv)
+{
+	int result = GR_OK;
+
+	if (argc == 4 && strcmp(argv[1], "--write") == 0) {
+		struct scene *scene = atrium_build(strtoul(argv[2], NULL, 10));
+
+		result = atrium_write(scene, argv[3]);
+		if (result != GR_OK)
+			fprintf(stderr, "%s: %s\n", argv[3], strerror(errno));
+		room_free(&scene);
+		return result == GR_OK ? GR_EXIT_OK : GR_EXIT_RUNTIME;
+	}
+	if (argc < 2) {
+		fprintf(stderr, "usage: bench-bake TRIANGLES|MODEL...  or  bench-bake --write TRIANGLES FILE.glb\n");
+		return GR_EXIT_CONFIG;
+	}
+	for (int i = 1; i < argc && result == GR_OK; i++) {
+		char *end;
+		size_t triangles = strtoul(argv[i], &end, 10);
+
+		result = *end == 0 && triangles > 0 ? measure_atrium(triangles) : measure_model(argv[i]);
+	}
+	if (result != GR_OK)
+		fprintf(stderr, "bench-bake: %s\n", gr_result_name(result));
+	return result == GR_OK ? GR_EXIT_OK : GR_EXIT_RUNTIME;
+}
