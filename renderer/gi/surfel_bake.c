@@ -234,6 +234,7 @@ static void finish(struct bake *bake)
 	free(bake->chosen);
 	free(bake->patch_first);
 	free(bake->patch_points);
+	free(bake->patch_sums);
 	free(bake->near);
 	surfel_set_destroy(&bake->set);
 }

@@ -78,6 +78,7 @@ struct bake {
 	struct bake_cells surfel_cells;
 	uint32_t *patch_first;   /* surfels + 1 places in patch_points */
 	uint32_t *patch_points;  /* sorted by patch; in one, by place */
+	float *patch_sums;       /* area of the patch up to each */
 
 	struct surfel_set *set;
 
@@ -137,6 +138,10 @@ void bake_follow(const struct bake *bake, struct v3 from, struct v3 way, uint64_
 struct v3 bake_cosine(struct v3 normal, const float u[2]);
 /* The surfel whose patch holds a point of a side; SURFEL_NONE: of none. */
 uint32_t bake_surfel_at(const struct bake *bake, struct v3 position, uint32_t side);
+/* What a ray meets first: nothing that reflects; what every link ends at, and where; the rest. */
+enum bake_meets { BAKE_NOTHING, BAKE_PLAIN, BAKE_GLOSSY };
+enum bake_meets bake_meets(const struct bake *bake, struct v3 from, struct v3 way,
+			   struct v3 *position, uint32_t *side);
 /* surfel_links.c: link j of surfel i starts so; all of a surfel's links, and what mirrors show it. */
 int bake_links(struct bake *bake);
 void bake_link_ray(const struct bake *bake, size_t i, uint32_t j, struct v3 *from, struct v3 *way);
@@ -150,6 +155,8 @@ int bake_probes(struct bake *bake);
 int bake_cells_build(struct bake_cells *out, float cell_m, size_t count,
 		     struct v3 (*position)(const void *ctx, size_t i), const void *ctx);
 void bake_cells_finish(struct bake_cells *cells);
+/* Lets memory fetch the cell of a position. */
+void bake_cells_expect(const struct bake_cells *cells, struct v3 position);
 /* Items of the cell `step` cells away from that of a position. */
 size_t bake_cells_at(const struct bake_cells *cells, struct v3 position, const int step[3],
 		     const uint32_t **out_items);

@@ -5,6 +5,12 @@
 
 #include <stdlib.h>
 
+/*
+ * Off the origin, so that walls at round numbers do not lie on the border of two
+ * cells, where rounding decides.
+ */
+#define SHIFT 0.3819660
+
 /* 21 bits an axis, around the origin; what is farther wraps, which only costs time. */
 static uint64_t cell_key(float cell_m, struct v3 p, const int step[3])
 {
@@ -13,14 +19,18 @@ static uint64_t cell_key(float cell_m, struct v3 p, const int step[3])
 	uint64_t key = 0;
 
 	for (int i = 0; i < 3; i++)
-		key = key << 21 | ((uint64_t)((int64_t)floor(at[i] * inverse) + step[i]) & 0x1fffff);
+		key = key << 21 | ((uint64_t)((int64_t)floor(at[i] * inverse + SHIFT) + step[i]) & 0x1fffff);
 	return key + 1;
+}
+
+static size_t home_of(const struct bake_cells *cells, uint64_t key)
+{
+	return (size_t)(key * UINT64_C(0x9e3779b97f4a7c15) >> 32) & (cells->slot_count - 1);
 }
 
 static size_t find(const struct bake_cells *cells, uint64_t key)
 {
-	uint64_t x = key * UINT64_C(0x9e3779b97f4a7c15);
-	size_t slot = (size_t)(x >> 32) & (cells->slot_count - 1);
+	size_t slot = home_of(cells, key);
 
 	while (cells->slots[slot].key && cells->slots[slot].key != key)
 		slot = (slot + 1) & (cells->slot_count - 1);
@@ -95,4 +105,11 @@ size_t bake_cells_at(const struct bake_cells *cells, struct v3 position, const i
 
 	*out_items = cells->items + cell->first;
 	return cell->count;
+}
+
+void bake_cells_expect(const struct bake_cells *cells, struct v3 position)
+{
+	static const int here[3] = { 0, 0, 0 };
+
+	__builtin_prefetch(&cells->slots[home_of(cells, cell_key(cells->cell_m, position, here))]);
 }

@@ -14,6 +14,7 @@
  */
 #define OFF_PLANE 0.4f
 #define OFF_WEIGHT 32.0f
+#define LINKS_AT_ONCE 64
 
 /* The nearest point of a side among those of one cell; NULL: there is none nearer than *square. */
 static const struct bake_near *nearest_in(const struct bake *bake, struct v3 position,
@@ -106,22 +107,68 @@ void bake_link_ray(const struct bake *bake, size_t i, uint32_t j, struct v3 *fro
 	*way = bake_cosine(n, u);
 }
 
+/* Links whose ray has met a plain surface, and where. */
+struct batch {
+	uint32_t link[LINKS_AT_ONCE], side[LINKS_AT_ONCE];
+	struct v3 position[LINKS_AT_ONCE];
+	uint32_t count;
+};
+
+/*
+ * Which surfels the hits belong to. They lie all over the scene, and memory
+ * answers late: all are asked for before the first is read.
+ */
+static void look_up(const struct bake *bake, struct batch *batch, uint32_t *links)
+{
+	static const int here[3] = { 0, 0, 0 };
+
+	for (uint32_t k = 0; k < batch->count; k++)
+		bake_cells_expect(&bake->cells, batch->position[k]);
+	for (uint32_t k = 0; k < batch->count; k++) {
+		const uint32_t *items;
+		size_t n = bake_cells_at(&bake->cells, batch->position[k], here, &items);
+		const char *near = (const char *)(bake->near + (items - bake->cells.items));
+
+		for (size_t at = 0; at < n * sizeof *bake->near && at < 512; at += 64)
+			__builtin_prefetch(near + at);
+	}
+	for (uint32_t k = 0; k < batch->count; k++)
+		links[batch->link[k]] = bake_surfel_at(bake, batch->position[k], batch->side[k]);
+	batch->count = 0;
+}
+
 void bake_link_surfel(const struct bake *bake, size_t i, uint32_t *links, float light[3])
 {
 	const uint32_t count = bake->set->links_each;
 	const float share = TRACE_PI / (float)count;
 	uint64_t key = random_start(bake->params.seed, i);
+	struct batch batch;
 
+	batch.count = 0;
 	for (uint32_t j = 0; j < count; j++) {
 		struct bake_end found;
 		struct v3 from, way;
 
 		bake_link_ray(bake, i, j, &from, &way);
-		bake_follow(bake, from, way, random_mix(key + j), &found);
-		links[j] = found.surfel;
-		for (int c = 0; c < 3; c++)
-			light[c] += share * found.light[c];
+		switch (bake_meets(bake, from, way, &batch.position[batch.count],
+				   &batch.side[batch.count])) {
+		case BAKE_NOTHING:
+			links[j] = SURFEL_NONE;
+			break;
+		case BAKE_PLAIN:
+			batch.link[batch.count++] = j;
+			if (batch.count == LINKS_AT_ONCE)
+				look_up(bake, &batch, links);
+			break;
+		case BAKE_GLOSSY:
+			bake_follow(bake, from, way, random_mix(key + j), &found);
+			links[j] = found.surfel;
+			for (int c = 0; c < 3; c++)
+				light[c] += share * found.light[c];
+			break;
+		}
 	}
+	look_up(bake, &batch, links);
 }
 
 static void link_all(void *ctx, size_t begin, size_t end, int thread)

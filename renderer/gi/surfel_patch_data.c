@@ -69,7 +69,8 @@ static int collect(struct bake *bake)
 
 	bake->patch_first = calloc(count + 1, sizeof *bake->patch_first);
 	bake->patch_points = calloc(bake->point_count + 1, sizeof *bake->patch_points);
-	if (!at || !bake->patch_first || !bake->patch_points) {
+	bake->patch_sums = calloc(bake->point_count + 1, sizeof *bake->patch_sums);
+	if (!at || !bake->patch_first || !bake->patch_points || !bake->patch_sums) {
 		free(at);
 		return GR_ERR_NOMEM;
 	}
@@ -89,15 +90,18 @@ static int collect(struct bake *bake)
 
 uint32_t bake_patch_point(const struct bake *bake, size_t i, float share)
 {
-	uint32_t first = bake->patch_first[i], end = bake->patch_first[i + 1];
-	float left = share * bake->set->area[i];
+	uint32_t low = bake->patch_first[i], high = bake->patch_first[i + 1] - 1;
+	float at = share * bake->set->area[i];
 
-	for (uint32_t k = first; k + 1 < end; k++) {
-		left -= bake->points[bake->patch_points[k]].area;
-		if (left < 0)
-			return bake->patch_points[k];
+	while (low < high) {
+		uint32_t middle = low + (high - low) / 2;
+
+		if (bake->patch_sums[middle] > at)
+			high = middle;
+		else
+			low = middle + 1;
 	}
-	return bake->patch_points[end - 1];
+	return bake->patch_points[low];
 }
 
 static void describe(struct bake *bake, size_t i)
@@ -111,6 +115,7 @@ static void describe(struct bake *bake, size_t i)
 
 		bake_albedo(bake, p, albedo);
 		area += (double)p->area;
+		bake->patch_sums[k] = (float)area;
 		for (int c = 0; c < 3; c++)
 			sum[c] += (double)p->area * (double)albedo[c];
 	}
