@@ -17,7 +17,7 @@
 #include <string.h>
 
 #define TURNS 5
-#define RAYS_MOST 1000000
+#define RACE_RAYS 1000000
 #define PORTION 8 /* surfels, as the baker has them */
 
 struct race {
@@ -113,7 +113,7 @@ static void race(const struct bake *bake, void *ctx)
 	RTCDevice device = rtcNewDevice("set_affinity=0");
 
 	(void)ctx;
-	r.every = 1 + bake->set->count * each / RAYS_MOST;
+	r.every = 1 + bake->set->count * each / RACE_RAYS;
 	r.surfels = (bake->set->count + r.every - 1) / r.every;
 	r.rays = calloc(r.surfels * each, sizeof *r.rays);
 	r.links = calloc(r.surfels * each, sizeof *r.links);
