@@ -192,7 +192,7 @@ static int lock_file(struct lock *lock, const char *path, int wait_s, double *wa
 
 static void unlock_file(struct lock *lock)
 {
-	if (lock->fd >= 0) {
+	if (lock->path && lock->fd >= 0) {
 		/* before it is let go: whoever waits sees that this one is no more */
 		unlink(lock->path);
 		close(lock->fd);

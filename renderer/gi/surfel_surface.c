@@ -112,7 +112,7 @@ static void join(uint32_t *parent, uint32_t a, uint32_t b)
 static int sort_pieces(struct bake *bake, uint32_t *parent)
 {
 	const struct scene *scene = bake->scene;
-	uint32_t *piece = malloc(scene->vertex_count * sizeof *piece);
+	uint32_t *piece = malloc((scene->vertex_count + 1) * sizeof *piece);
 	uint32_t *at = NULL;
 
 	if (!piece)
