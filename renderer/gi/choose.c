@@ -15,11 +15,7 @@ struct gi_choice gi_choose(const struct scene_file *file, const struct scene *sc
 			return (struct gi_choice){ SCENE_GI_NONE, "nothing lights the scene" };
 		return (struct gi_choice){ file->gi.method, "the scene file asks for it" };
 	case SCENE_GI_AUTO:
-		break;
+		break; /* a plan has put a method in its place */
 	}
-	if (!near && !scene->environment)
-		return (struct gi_choice){ SCENE_GI_NONE, "nothing lights the scene" };
-	if (file->scattering_per_m > 0 && near)
-		return (struct gi_choice){ SCENE_GI_LPV, "the air scatters light" };
-	return (struct gi_choice){ SCENE_GI_SURFELS, "the scene stands still and its air is clear" };
+	return (struct gi_choice){ SCENE_GI_NONE, "no method was chosen" };
 }

@@ -7,13 +7,14 @@
 #include "renderer/scene/scene.h"
 
 struct gi_choice {
-	enum scene_gi_method method; /* never SCENE_GI_AUTO */
+	enum scene_gi_method method; /* not SCENE_GI_AUTO */
 	const char *why;	     /* for the log */
 };
 
 /*
- * The file's method; for SCENE_GI_AUTO one that suits. SCENE_GI_NONE where
- * nothing lights the scene that the method knows. near: there are lamps or
+ * The file's method, or SCENE_GI_NONE where nothing lights the scene that the
+ * method knows. The file is one that a plan was made for (plan.h): its method
+ * is not SCENE_GI_AUTO any more. near: there are lamps or
  * emissive surfaces.
  */
 struct gi_choice gi_choose(const struct scene_file *file, const struct scene *scene, bool near);
