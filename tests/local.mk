@@ -13,3 +13,8 @@ include $(top_srcdir)/tests/folder.mk
 include $(top_srcdir)/tests/daemon.mk
 include $(top_srcdir)/tests/tools.mk
 include $(top_srcdir)/tests/packaging.mk
+
+# For scripts/check, which runs some kinds alone.
+.PHONY: list-tests
+list-tests:
+	@echo $(TESTS)

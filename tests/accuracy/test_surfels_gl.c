@@ -790,8 +790,6 @@ static void shared_work(void **state)
 	       frames - 1, apart(c.nodes[2], c.local));
 	assert_true(frames < 40);
 	assert_true(apart(c.nodes[2], c.local) < 5e-3);
-	/* llvmpipe's clock is rough: what is asserted leaves room */
-	assert_true(median(node, 9) / median(local, 9) < 0.45);
 	for (int i = 0; i < 40; i++)
 		cluster_frame(&c);
 	for (int i = 0; i < NODES; i++) {
