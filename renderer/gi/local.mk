@@ -18,7 +18,7 @@ RENDERER_SOURCES += \
 	renderer/gi/surfel_file.c renderer/gi/surfel_file.h renderer/gi/surfel_file_check.c renderer/gi/surfel_file_private.h \
 	renderer/gi/surfel_store.c renderer/gi/surfel_store.h \
 	renderer/gi/surfel_random.h renderer/gi/surfel_reach.c renderer/gi/surfel_surface.c \
-	renderer/gi/surfel_grid.c renderer/gi/surfel_set.c renderer/gi/surfel_set.h \
+	renderer/gi/surfel_grid.c renderer/gi/surfel_set.c renderer/gi/surfel_set.h renderer/gi/surfel_start.c \
 	renderer/gi/surfels.c renderer/gi/surfels.h renderer/gi/surfels_private.h \
 	renderer/gi/surfels_check.c renderer/gi/surfels_probes.c renderer/gi/surfels_share.c renderer/gi/surfels_smooth.c renderer/gi/surfels_upload.c \
 	renderer/gi/transfer.c renderer/gi/transfer.h

@@ -236,6 +236,8 @@ static void finish(struct bake *bake)
 	free(bake->patch_points);
 	free(bake->patch_sums);
 	free(bake->near);
+	free(bake->sobol);
+	free(bake->meets);
 	surfel_set_destroy(&bake->set);
 }
 

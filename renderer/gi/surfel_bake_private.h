@@ -42,8 +42,9 @@ struct bake_cells {
 
 /* What a hit looks up, in the order of the cells' items: close together in memory. */
 struct bake_near {
-	struct v3 position;
+	struct v3 position, normal;
 	uint32_t side, patch;
+	float clear; /* m^2 around it from where its patch's surfel is surely seen; -1: nowhere surely */
 };
 
 struct bake {
@@ -79,6 +80,9 @@ struct bake {
 	uint32_t *patch_first;   /* surfels + 1 places in patch_points */
 	uint32_t *patch_points;  /* sorted by patch; in one, by place */
 	float *patch_sums;       /* area of the patch up to each */
+
+	uint32_t (*sobol)[3];    /* of each link of a surfel, not yet scrambled */
+	uint8_t *meets;          /* enum bake_meets of each side */
 
 	struct surfel_set *set;
 
@@ -138,13 +142,19 @@ void bake_follow(const struct bake *bake, struct v3 from, struct v3 way, uint64_
 struct v3 bake_cosine(struct v3 normal, const float u[2]);
 /* The surfel whose patch holds a point of a side; SURFEL_NONE: of none. */
 uint32_t bake_surfel_at(const struct bake *bake, struct v3 position, uint32_t side);
-/* What a ray meets first: nothing that reflects; what every link ends at, and where; the rest. */
+/* What a ray meets on a side: nothing that reflects; what every link ends at; the rest. */
 enum bake_meets { BAKE_NOTHING, BAKE_PLAIN, BAKE_GLOSSY };
-enum bake_meets bake_meets(const struct bake *bake, struct v3 from, struct v3 way,
-			   struct v3 *position, uint32_t *side);
-/* surfel_links.c: link j of surfel i starts so; all of a surfel's links, and what mirrors show it. */
+enum bake_meets bake_meets(const struct bake *bake, uint32_t side);
+/* surfel_start.c: the links' rays, at most BAKE_LINKS_AT_ONCE of a surfel, from link `first` on. */
+#define BAKE_LINKS_AT_ONCE 256
+struct bake_links_rays {
+	uint32_t count;
+	struct ray_start ray[BAKE_LINKS_AT_ONCE];
+};
+int bake_link_tables(struct bake *bake);
+void bake_link_rays(const struct bake *bake, size_t i, uint32_t first, struct bake_links_rays *out);
+/* surfel_links.c: all links; those of a surfel, and what mirrors show it. */
 int bake_links(struct bake *bake);
-void bake_link_ray(const struct bake *bake, size_t i, uint32_t j, struct v3 *from, struct v3 *way);
 void bake_link_surfel(const struct bake *bake, size_t i, uint32_t *links, float light[3]);
 /* surfel_fixed.c; after the links, which bring what mirrors show. */
 int bake_fixed(struct bake *bake);
@@ -155,8 +165,9 @@ int bake_probes(struct bake *bake);
 int bake_cells_build(struct bake_cells *out, float cell_m, size_t count,
 		     struct v3 (*position)(const void *ctx, size_t i), const void *ctx);
 void bake_cells_finish(struct bake_cells *cells);
-/* Lets memory fetch the cell of a position. */
-void bake_cells_expect(const struct bake_cells *cells, struct v3 position);
+/* The key of a position's cell, which memory is asked for; and that cell's items. */
+uint64_t bake_cells_expect(const struct bake_cells *cells, struct v3 position);
+size_t bake_cells_of(const struct bake_cells *cells, uint64_t key, const uint32_t **out_items);
 /* Items of the cell `step` cells away from that of a position. */
 size_t bake_cells_at(const struct bake_cells *cells, struct v3 position, const int step[3],
 		     const uint32_t **out_items);

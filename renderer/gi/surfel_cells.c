@@ -18,8 +18,14 @@ static uint64_t cell_key(float cell_m, struct v3 p, const int step[3])
 	const double at[3] = { (double)p.x, (double)p.y, (double)p.z };
 	uint64_t key = 0;
 
-	for (int i = 0; i < 3; i++)
-		key = key << 21 | ((uint64_t)((int64_t)floor(at[i] * inverse + SHIFT) + step[i]) & 0x1fffff);
+	for (int i = 0; i < 3; i++) {
+		/* floor() is a call */
+		double x = at[i] * inverse + SHIFT;
+		int64_t whole = (int64_t)x;
+
+		whole -= x < (double)whole;
+		key = key << 21 | ((uint64_t)(whole + step[i]) & 0x1fffff);
+	}
 	return key + 1;
 }
 
@@ -97,19 +103,25 @@ void bake_cells_finish(struct bake_cells *cells)
 	*cells = (struct bake_cells){ 0 };
 }
 
-size_t bake_cells_at(const struct bake_cells *cells, struct v3 position, const int step[3],
-		     const uint32_t **out_items)
+uint64_t bake_cells_expect(const struct bake_cells *cells, struct v3 position)
 {
-	const struct bake_cell *cell =
-		&cells->slots[find(cells, cell_key(cells->cell_m, position, step))];
+	static const int here[3] = { 0, 0, 0 };
+	uint64_t key = cell_key(cells->cell_m, position, here);
+
+	__builtin_prefetch(&cells->slots[home_of(cells, key)]);
+	return key;
+}
+
+size_t bake_cells_of(const struct bake_cells *cells, uint64_t key, const uint32_t **out_items)
+{
+	const struct bake_cell *cell = &cells->slots[find(cells, key)];
 
 	*out_items = cells->items + cell->first;
 	return cell->count;
 }
 
-void bake_cells_expect(const struct bake_cells *cells, struct v3 position)
+size_t bake_cells_at(const struct bake_cells *cells, struct v3 position, const int step[3],
+		     const uint32_t **out_items)
 {
-	static const int here[3] = { 0, 0, 0 };
-
-	__builtin_prefetch(&cells->slots[home_of(cells, cell_key(cells->cell_m, position, here))]);
+	return bake_cells_of(cells, cell_key(cells->cell_m, position, step), out_items);
 }

@@ -14,27 +14,36 @@
  */
 #define OFF_PLANE 0.4f
 #define OFF_WEIGHT 32.0f
-#define LINKS_AT_ONCE 64
+#define LOOK_UPS 32 /* at once */
 
-/* The nearest point of a side among those of one cell; NULL: there is none nearer than *square. */
-static const struct bake_near *nearest_in(const struct bake *bake, struct v3 position,
-					  uint32_t side, const int step[3], float *square)
+/* Points of a cell. */
+struct crowd {
+	const struct bake_near *near;
+	size_t count;
+};
+
+static struct crowd crowd_of(const struct bake *bake, const uint32_t *items, size_t count)
 {
-	const uint32_t *items;
-	size_t n = bake_cells_at(&bake->cells, position, step, &items);
-	const struct bake_near *near = bake->near + (items - bake->cells.items), *found = NULL;
+	return (struct crowd){ bake->near + (items - bake->cells.items), count };
+}
 
-	for (size_t k = 0; k < n; k++) {
+/* The nearest point of a side in a crowd; NULL: there is none nearer than *square. */
+static const struct bake_near *nearest_in(const struct bake *bake, struct crowd crowd,
+					  struct v3 position, uint32_t side, float *square)
+{
+	const struct bake_near *near = crowd.near, *found = NULL;
+	const struct v3 m = bake_normal(bake, side);
+
+	for (size_t k = 0; k < crowd.count; k++) {
 		struct v3 d = v3_sub(near[k].position, position);
 		float s = v3_dot(d, d);
 
 		if (s >= *square)
 			continue;
 		if (near[k].side != side) {
-			struct v3 m = bake_normal(bake, side);
 			float off = v3_dot(d, m);
 
-			if (v3_dot(bake_normal(bake, near[k].side), m) < BAKE_SAME_SIDE ||
+			if (v3_dot(near[k].normal, m) < BAKE_SAME_SIDE ||
 			    off * off > OFF_PLANE * OFF_PLANE * s)
 				continue;
 			s += OFF_WEIGHT * off * off;
@@ -60,19 +69,23 @@ static bool in_sight(const struct bake *bake, const struct bake_near *near, stru
 	       surfel_sight(bake->set, near->patch, at) <= 1;
 }
 
-uint32_t bake_surfel_at(const struct bake *bake, struct v3 position, uint32_t side)
+/* bake_surfel_at, of a position whose cell's points are known. */
+static uint32_t surfel_among(const struct bake *bake, struct crowd here, struct v3 position,
+			     uint32_t side)
 {
-	static const int here[3] = { 0, 0, 0 };
 	float square = INFINITY;
-	const struct bake_near *found = nearest_in(bake, position, side, here, &square);
+	const struct bake_near *found = nearest_in(bake, here, position, side, &square);
 	struct bake_point p = { .position = position, .side = side, .lift = bake->lift };
 	uint32_t surfel;
 
-	if (in_sight(bake, found, position))
+	if (found && (square <= found->clear || in_sight(bake, found, position)))
 		return found->patch;
 	for (int k = 0; k < 27; k++) {
 		const int step[3] = { k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1 };
-		const struct bake_near *other = nearest_in(bake, position, side, step, &square);
+		const uint32_t *items;
+		size_t n = bake_cells_at(&bake->cells, position, step, &items);
+		const struct bake_near *other =
+			nearest_in(bake, crowd_of(bake, items, n), position, side, &square);
 
 		found = other ? other : found;
 	}
@@ -85,90 +98,94 @@ uint32_t bake_surfel_at(const struct bake *bake, struct v3 position, uint32_t si
 	return surfel == SURFEL_NONE && found ? found->patch : surfel;
 }
 
-struct v3 bake_cosine(struct v3 normal, const float u[2])
+uint32_t bake_surfel_at(const struct bake *bake, struct v3 position, uint32_t side)
 {
-	struct v3_frame frame = v3_frame_of(normal);
-	float r = sqrtf(u[0]), phi = 2 * TRACE_PI * u[1];
+	static const int here[3] = { 0, 0, 0 };
+	const uint32_t *items;
+	size_t n = bake_cells_at(&bake->cells, position, here, &items);
 
-	return v3_from_local(&frame, (struct v3){ r * cosf(phi), r * sinf(phi),
-						  sqrtf(fmaxf(1 - u[0], 0)) });
-}
-
-void bake_link_ray(const struct bake *bake, size_t i, uint32_t j, struct v3 *from, struct v3 *way)
-{
-	const struct bake_point *p;
-	struct v3 n;
-	float u[3];
-
-	sobol_point(random_start(bake->params.seed, i), j, u);
-	p = &bake->points[bake_patch_point(bake, i, u[2])];
-	n = bake_normal(bake, p->side);
-	*from = v3_ahead(p->position, n, bake->offset);
-	*way = bake_cosine(n, u);
+	return surfel_among(bake, crowd_of(bake, items, n), position, side);
 }
 
 /* Links whose ray has met a plain surface, and where. */
 struct batch {
-	uint32_t link[LINKS_AT_ONCE], side[LINKS_AT_ONCE];
-	struct v3 position[LINKS_AT_ONCE];
+	uint32_t link[BAKE_LINKS_AT_ONCE], side[BAKE_LINKS_AT_ONCE];
+	struct v3 position[BAKE_LINKS_AT_ONCE];
 	uint32_t count;
 };
 
 /*
- * Which surfels the hits belong to. They lie all over the scene, and memory
- * answers late: all are asked for before the first is read.
+ * Which surfels the hits belong to, of at most LOOK_UPS from `from` on. They lie all
+ * over the scene, and memory answers late: all are asked for before the first is read.
  */
-static void look_up(const struct bake *bake, struct batch *batch, uint32_t *links)
+static void look_up(const struct bake *bake, const struct batch *batch, uint32_t from,
+		    uint32_t end, uint32_t *links)
 {
-	static const int here[3] = { 0, 0, 0 };
+	uint64_t cells[LOOK_UPS];
+	struct crowd crowds[LOOK_UPS];
 
-	for (uint32_t k = 0; k < batch->count; k++)
-		bake_cells_expect(&bake->cells, batch->position[k]);
-	for (uint32_t k = 0; k < batch->count; k++) {
+	for (uint32_t k = from; k < end; k++)
+		cells[k - from] = bake_cells_expect(&bake->cells, batch->position[k]);
+	for (uint32_t k = from; k < end; k++) {
 		const uint32_t *items;
-		size_t n = bake_cells_at(&bake->cells, batch->position[k], here, &items);
-		const char *near = (const char *)(bake->near + (items - bake->cells.items));
+		size_t n = bake_cells_of(&bake->cells, cells[k - from], &items);
+		const char *near;
 
+		crowds[k - from] = crowd_of(bake, items, n);
+		near = (const char *)crowds[k - from].near;
 		for (size_t at = 0; at < n * sizeof *bake->near && at < 512; at += 64)
 			__builtin_prefetch(near + at);
+		__builtin_prefetch(&bake->normals[batch->side[k] / 2]);
 	}
-	for (uint32_t k = 0; k < batch->count; k++)
-		links[batch->link[k]] = bake_surfel_at(bake, batch->position[k], batch->side[k]);
-	batch->count = 0;
+	for (uint32_t k = from; k < end; k++)
+		links[batch->link[k]] = surfel_among(bake, crowds[k - from], batch->position[k],
+						     batch->side[k]);
+}
+
+/* A link that meets a glossy surface goes on. */
+static uint32_t link_glossy(const struct bake *bake, const struct ray_start *ray, uint64_t key,
+			    float light[3])
+{
+	const float share = TRACE_PI / (float)bake->set->links_each;
+	struct bake_end found;
+
+	bake_follow(bake, v3_of(ray->origin), v3_of(ray->direction), key, &found);
+	for (int c = 0; c < 3; c++)
+		light[c] += share * found.light[c];
+	return found.surfel;
 }
 
 void bake_link_surfel(const struct bake *bake, size_t i, uint32_t *links, float light[3])
 {
-	const uint32_t count = bake->set->links_each;
-	const float share = TRACE_PI / (float)count;
 	uint64_t key = random_start(bake->params.seed, i);
+	struct ray_met met[BAKE_LINKS_AT_ONCE];
+	struct bake_links_rays rays;
 	struct batch batch;
 
-	batch.count = 0;
-	for (uint32_t j = 0; j < count; j++) {
-		struct bake_end found;
-		struct v3 from, way;
+	for (uint32_t first = 0; first < bake->set->links_each; first += rays.count) {
+		bake_link_rays(bake, i, first, &rays);
+		rays_nearest_many(bake->world.rays, rays.count, rays.ray, met);
+		batch.count = 0;
+		for (uint32_t k = 0; k < rays.count; k++) {
+			const struct ray_start *ray = &rays.ray[k];
+			uint32_t j = first + k, side = 2 * met[k].triangle + met[k].back;
+			enum bake_meets meets = met[k].triangle == RAYS_NONE ? BAKE_NOTHING :
+									       bake->meets[side];
 
-		bake_link_ray(bake, i, j, &from, &way);
-		switch (bake_meets(bake, from, way, &batch.position[batch.count],
-				   &batch.side[batch.count])) {
-		case BAKE_NOTHING:
 			links[j] = SURFEL_NONE;
-			break;
-		case BAKE_PLAIN:
-			batch.link[batch.count++] = j;
-			if (batch.count == LINKS_AT_ONCE)
-				look_up(bake, &batch, links);
-			break;
-		case BAKE_GLOSSY:
-			bake_follow(bake, from, way, random_mix(key + j), &found);
-			links[j] = found.surfel;
-			for (int c = 0; c < 3; c++)
-				light[c] += share * found.light[c];
-			break;
+			if (meets == BAKE_GLOSSY)
+				links[j] = link_glossy(bake, ray, random_mix(key + j), light);
+			if (meets != BAKE_PLAIN)
+				continue;
+			batch.link[batch.count] = j;
+			batch.side[batch.count] = side;
+			batch.position[batch.count++] =
+				v3_ahead(v3_of(ray->origin), v3_of(ray->direction), met[k].distance);
 		}
+		for (uint32_t from = 0; from < batch.count; from += LOOK_UPS)
+			look_up(bake, &batch, from,
+				from + LOOK_UPS < batch.count ? from + LOOK_UPS : batch.count, links);
 	}
-	look_up(bake, &batch, links);
 }
 
 static void link_all(void *ctx, size_t begin, size_t end, int thread)
@@ -193,7 +210,9 @@ int bake_links(struct bake *bake)
 	if (!set->links || !set->fixed_other)
 		return GR_ERR_NOMEM;
 	set->rays += set->count * set->links_each;
-	result = bake_run(bake, set->count, 8, link_all, bake);
+	result = bake_link_tables(bake);
+	if (result == GR_OK)
+		result = bake_run(bake, set->count, 8, link_all, bake);
 	set->ray_seconds = (double)(gr_clock_now(&gr_clock_monotonic) - start) * 1e-9;
 	return result;
 }

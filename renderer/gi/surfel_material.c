@@ -111,25 +111,13 @@ static void add_light(const struct bake *bake, const struct ray_hit *hit, struct
 		out->light[c] += radiance[c];
 }
 
-enum bake_meets bake_meets(const struct bake *bake, struct v3 from, struct v3 way,
-			   struct v3 *position, uint32_t *side)
+enum bake_meets bake_meets(const struct bake *bake, uint32_t side)
 {
-	float at[3], to[3];
-	struct ray_hit hit;
-	bool back;
+	uint32_t triangle = side / 2;
 
-	v3_put(from, at);
-	v3_put(way, to);
-	if (!rays_nearest(bake->world.rays, at, to, INFINITY, &hit))
+	if ((side & 1) && !bake->two_sided[triangle])
 		return BAKE_NOTHING;
-	back = v3_dot(v3_of(hit.normal), way) > 0;
-	if (back && !bake->two_sided[hit.triangle])
-		return BAKE_NOTHING;
-	if (is_glossy(world_material(&bake->world, hit.triangle)))
-		return BAKE_GLOSSY;
-	*position = v3_ahead(from, way, hit.distance);
-	*side = 2 * hit.triangle + back;
-	return BAKE_PLAIN;
+	return is_glossy(world_material(&bake->world, triangle)) ? BAKE_GLOSSY : BAKE_PLAIN;
 }
 
 void bake_follow(const struct bake *bake, struct v3 from, struct v3 way, uint64_t key,

@@ -251,6 +251,28 @@ static void assign(void *ctx, size_t begin, size_t end, int thread)
 		bake->points[i].patch = bake_nearest_surfel(bake, &bake->points[i]);
 }
 
+/*
+ * Sight along a surface from a surfel is at least the shortest of its reaches, in
+ * radii; as far as that is from it, no one need compute it.
+ */
+static float clear_around(const struct bake *bake, const struct bake_point *p)
+{
+	const struct surfel *surfel;
+	float least = 255, left;
+	struct v3 d;
+
+	if (p->patch == SURFEL_NONE)
+		return -1;
+	surfel = &bake->set->surfels[p->patch];
+	if (surfel->reach[0] == 1)
+		return INFINITY; /* in a cavity reach says nothing */
+	for (int k = 0; k < SURFEL_SECTORS; k++)
+		least = fminf(least, surfel->reach[k]);
+	d = v3_sub(p->position, v3_of(surfel->position));
+	left = 0.999f * least / 255 * bake->radius - sqrtf(v3_dot(d, d));
+	return left > 0 ? left * left : -1;
+}
+
 int bake_assign(struct bake *bake)
 {
 	int result = bake_cells_build(&bake->surfel_cells, bake->spacing, bake->chosen_count,
@@ -269,7 +291,13 @@ int bake_assign(struct bake *bake)
 	for (size_t k = 0; k < bake->point_count; k++) {
 		const struct bake_point *p = &bake->points[bake->cells.items[k]];
 
-		bake->near[k] = (struct bake_near){ p->position, p->side, p->patch };
+		bake->near[k] = (struct bake_near){
+			.position = p->position,
+			.normal = bake_normal(bake, p->side),
+			.side = p->side,
+			.patch = p->patch,
+			.clear = clear_around(bake, p),
+		};
 	}
 	return GR_OK;
 }

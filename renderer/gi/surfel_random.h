@@ -58,8 +58,11 @@ static inline uint32_t sobol_scramble(uint32_t x, uint32_t seed)
 	return x;
 }
 
-/* Point `index` of a set, below 2^16 points; all coordinates in [0, 1). */
-static inline void sobol_point(uint64_t key, uint32_t index, float out[3])
+/*
+ * Point `index` of the sequence as it is, below 2^16 points, each coordinate's bits
+ * in reverse: the same for all sets, so that who needs many sets has a table.
+ */
+static inline void sobol_raw(uint32_t index, uint32_t out[3])
 {
 	uint32_t second = 0, third = 0;
 	/* direction numbers of the polynomials x + 1 and x^2 + x + 1 (Joe and Kuo: m = 1; 1 3) */
@@ -76,12 +79,32 @@ static inline void sobol_point(uint64_t key, uint32_t index, float out[3])
 		a = b;
 		b = c;
 	}
-	const uint32_t reversed[3] = { index, sobol_reverse(second), sobol_reverse(third) };
-	for (uint32_t d = 0; d < 3; d++) {
-		uint32_t seed = (uint32_t)(random_mix(key + d * UINT64_C(0x9e3779b97f4a7c15)) >> 32);
+	out[0] = index;
+	out[1] = sobol_reverse(second);
+	out[2] = sobol_reverse(third);
+}
 
-		out[d] = (float)(sobol_reverse(sobol_scramble(reversed[d], seed)) >> 8) * 0x1p-24f;
-	}
+/* What scrambles the set of a key. */
+static inline void sobol_seeds(uint64_t key, uint32_t out[3])
+{
+	for (uint32_t d = 0; d < 3; d++)
+		out[d] = (uint32_t)(random_mix(key + d * UINT64_C(0x9e3779b97f4a7c15)) >> 32);
+}
+
+static inline void sobol_owen(const uint32_t raw[3], const uint32_t seeds[3], float out[3])
+{
+	for (int d = 0; d < 3; d++)
+		out[d] = (float)(sobol_reverse(sobol_scramble(raw[d], seeds[d])) >> 8) * 0x1p-24f;
+}
+
+/* Point `index` of the set of a key; all coordinates in [0, 1). */
+static inline void sobol_point(uint64_t key, uint32_t index, float out[3])
+{
+	uint32_t raw[3], seeds[3];
+
+	sobol_raw(index, raw);
+	sobol_seeds(key, seeds);
+	sobol_owen(raw, seeds, out);
 }
 
 #endif

@@ -190,6 +190,47 @@ bool rays_nearest(const struct rays *rays, const float origin[3], const float di
 	return nearest(rays, &context, origin, direction, max_distance, out);
 }
 
+#define AT_ONCE 64
+
+/*
+ * All are written before the first is traced: Embree reads four floats at a time,
+ * and waits for a ray whose floats have only just been written one by one.
+ */
+static void nearest_some(const struct rays *rays, size_t count, const struct ray_start *starts,
+			 struct ray_met *out)
+{
+	struct RTCRayHit q[AT_ONCE];
+	struct RTCIntersectContext context;
+
+	rtcInitIntersectContext(&context);
+	for (size_t k = 0; k < count; k++) {
+		if (!start(&q[k].ray, starts[k].origin, starts[k].direction, INFINITY))
+			q[k].ray = (struct RTCRay){ .tfar = -1 };
+		q[k].hit.geomID = RTC_INVALID_GEOMETRY_ID;
+		q[k].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+	}
+	for (size_t k = 0; k < count; k++)
+		if (q[k].ray.tfar >= 0)
+			rtcIntersect1(rays->scene, &context, &q[k]);
+	for (size_t k = 0; k < count; k++) {
+		const struct RTCRayHit *r = &q[k];
+		bool met = r->hit.geomID != RTC_INVALID_GEOMETRY_ID;
+
+		out[k].distance = met ? r->ray.tfar : INFINITY;
+		out[k].triangle = met ? r->hit.primID : RAYS_NONE;
+		out[k].back = met && r->hit.Ng_x * r->ray.dir_x + r->hit.Ng_y * r->ray.dir_y +
+						     r->hit.Ng_z * r->ray.dir_z >
+					     0;
+	}
+}
+
+void rays_nearest_many(const struct rays *rays, size_t count, const struct ray_start *starts,
+		       struct ray_met *out)
+{
+	for (size_t k = 0; k < count; k += AT_ONCE)
+		nearest_some(rays, count - k < AT_ONCE ? count - k : AT_ONCE, starts + k, out + k);
+}
+
 /* Takes back a hit on the back of a one-sided triangle. */
 static void only_drawn(const struct RTCFilterFunctionNArguments *arguments)
 {

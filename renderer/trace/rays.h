@@ -12,6 +12,8 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 
 struct rays;
 /* Builds the acceleration structure; the scene may go after. */
@@ -38,6 +40,18 @@ static inline bool rays_valid(const float origin[3], const float direction[3])
 }
 bool rays_nearest(const struct rays *rays, const float origin[3], const float direction[3],
 		  float max_distance, struct ray_hit *out);
+/* Many rays, each to what it meets first, however far; finds what rays_nearest finds, sooner. */
+#define RAYS_NONE UINT32_MAX
+struct ray_start {
+	float origin[3], direction[3];
+};
+struct ray_met {
+	float distance;
+	uint32_t triangle; /* RAYS_NONE: nothing */
+	bool back;         /* of the triangle is what the ray meets */
+};
+void rays_nearest_many(const struct rays *rays, size_t count, const struct ray_start *starts,
+		       struct ray_met *out);
 /* As the renderer draws: what shows its back and is one-sided is not there. */
 bool rays_nearest_drawn(const struct rays *rays, const float origin[3], const float direction[3],
 			float max_distance, struct ray_hit *out);

@@ -173,6 +173,43 @@ static struct links *links_of(const struct scene *scene, int cells, float shift)
 	return links;
 }
 
+/* Rays by the many find what each finds by itself; no number and too far find nothing. */
+static void rays_by_many(void **state)
+{
+	const float min[3] = { 0, 0, 0 }, max[3] = { 4, 4, 4 };
+	struct unit_random random = unit_random_start("rays");
+	struct scene *scene = room(0.5f, min, max);
+	struct ray_start starts[203];
+	struct ray_met met[203];
+	struct rays *rays;
+
+	(void)state;
+	for (size_t k = 0; k < 203; k++)
+		for (int i = 0; i < 3; i++) {
+			starts[k].origin[i] = (float)unit_random_range(&random, -1, 5);
+			starts[k].direction[i] = (float)unit_random_range(&random, -1, 1);
+		}
+	starts[70].origin[1] = NAN;
+	starts[71].direction[2] = 4 * RAYS_MOST;
+	assert_int_equal(rays_create(&rays, scene), GR_OK);
+	rays_nearest_many(rays, 203, starts, met);
+	for (size_t k = 0; k < 203; k++) {
+		const float *n, *way = starts[k].direction;
+		struct ray_hit hit;
+
+		if (!rays_nearest(rays, starts[k].origin, way, INFINITY, &hit)) {
+			assert_true(met[k].triangle == RAYS_NONE && isinf(met[k].distance));
+			continue;
+		}
+		n = hit.normal;
+		assert_true(met[k].triangle == hit.triangle && met[k].distance == hit.distance);
+		assert_true(met[k].back == (n[0] * way[0] + n[1] * way[1] + n[2] * way[2] > 0));
+	}
+	assert_true(met[70].triangle == RAYS_NONE && met[71].triangle == RAYS_NONE);
+	rays_destroy(&rays);
+	room_free(&scene);
+}
+
 /* In a closed black room all that is injected meets the walls, all in one step's books. */
 static void incident_is_injected(void **state)
 {
@@ -408,7 +445,7 @@ int main(void)
 		cmocka_unit_test(incident_is_injected), cmocka_unit_test(superposition),
 		cmocka_unit_test(uniform_radiance),   cmocka_unit_test(thin_wall),
 		cmocka_unit_test(shifted_lattice),    cmocka_unit_test(dispatch_splits),
-		cmocka_unit_test(lattice_limits),
+		cmocka_unit_test(lattice_limits),     cmocka_unit_test(rays_by_many),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
