@@ -268,9 +268,10 @@ static int bake_and_keep(struct request *r, const char *path)
 		return result;
 	r->done->baked = true;
 	if (!path) {
-		gr_diag_add(r->diag, GR_DIAG_WARNING,
-			    r->store->beside ? r->store->beside : "surfels", 0, NULL,
-			    "cannot be written, and neither can a cache: baked again at every start");
+		/* a scene without a file has no place, and asks for none */
+		if (r->store->beside)
+			gr_diag_add(r->diag, GR_DIAG_WARNING, r->store->beside, 0, NULL,
+				    "cannot be written, and neither can a cache: baked again at every start");
 	} else if (surfel_file_write(*r->out, r->key, path) == GR_OK) {
 		r->done->path = path;
 	} else {
