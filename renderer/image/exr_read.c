@@ -181,6 +181,7 @@ int image_decode_exr(const uint8_t *bytes, size_t len, const char *name, struct 
 	memset(out, 0, sizeof *out);
 	settings.error_handler_fn = exr_keep_message;
 	settings.user_data = &stream;
+	exr_listen(&stream);
 	settings.read_fn = read_bytes;
 	settings.size_fn = size_of_bytes;
 	settings.max_image_width = IMAGE_MAX_SIDE;
@@ -194,6 +195,7 @@ int image_decode_exr(const uint8_t *bytes, size_t len, const char *name, struct 
 		result = read_part(file, name, out, &stream, diag);
 	}
 	exr_finish(&file);
+	exr_listen(NULL);
 	return result;
 }
 

@@ -6,19 +6,21 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
+
+static _Thread_local struct exr_bytes *listener;
+
+void exr_listen(struct exr_bytes *bytes)
+{
+	listener = bytes;
+}
 
 void exr_keep_message(exr_const_context_t context, exr_result_t code, const char *message)
 {
-	void *user = NULL;
-	struct exr_bytes *bytes;
-
+	(void)context;
 	(void)code;
-	/* Before the context exists there is nobody to tell. */
-	if (!context || exr_get_user_data(context, &user) != EXR_ERR_SUCCESS || !user)
-		return;
-	bytes = user;
-	if (!bytes->message[0])
-		snprintf(bytes->message, sizeof bytes->message, "%s", message);
+	if (listener && !listener->message[0])
+		snprintf(listener->message, sizeof listener->message, "%s", message);
 }
 
 static exr_result_t add_channels(exr_context_t file, const char *const *names, int count)
@@ -90,11 +92,17 @@ int image_write_exr(const char *path, const struct image *image, const char *con
 	exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
 	struct exr_bytes bytes = { 0 };
 	exr_context_t file = NULL;
+	struct stat there;
 	exr_result_t result;
 	int part;
 
+	/* OpenEXR seeks in it, and removes it when writing fails: never a device */
+	if (stat(path, &there) == 0 && !S_ISREG(there.st_mode)) {
+		gr_error("%s: is there and is no plain file; a picture goes into one", path);
+		return GR_ERR_IO;
+	}
 	settings.error_handler_fn = exr_keep_message;
-	settings.user_data = &bytes;
+	exr_listen(&bytes);
 	result = exr_start_write(&file, path, EXR_WRITE_FILE_DIRECTLY, &settings);
 	if (result == EXR_ERR_SUCCESS)
 		result = exr_add_part(file, "grotto", EXR_STORAGE_SCANLINE, &part);
@@ -116,6 +124,7 @@ int image_write_exr(const char *path, const struct image *image, const char *con
 		if (created)
 			remove(path);
 	}
+	exr_listen(NULL);
 	if (result == EXR_ERR_SUCCESS)
 		return GR_OK;
 	gr_error("%s: cannot be written: %s", path,

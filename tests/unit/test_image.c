@@ -7,6 +7,9 @@
 #include "tests/unit/shared.h"
 
 #include <math.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static char exr_path[64], png_path[64];
@@ -288,13 +291,52 @@ static void test_foreign(void **state)
 	}
 }
 
+/*
+ * A full disk, at every place in the file: an error with its reason, and no wait
+ * (OpenEXR tells of some while it holds its own lock).
+ */
+static void test_full(void **state)
+{
+	struct rlimit usual, least;
+	struct image image;
+	struct stat there;
+	int result;
+
+	(void)state;
+	assert_int_equal(image_create(&image, 16, 16, 3), GR_OK);
+	remove(exr_path);
+	assert_int_equal(getrlimit(RLIMIT_FSIZE, &usual), 0);
+	signal(SIGXFSZ, SIG_IGN);
+	for (rlim_t bytes = 0; bytes < 600; bytes += 8) {
+		least = (struct rlimit){ bytes, usual.rlim_max };
+		assert_int_equal(setrlimit(RLIMIT_FSIZE, &least), 0);
+		alarm(20);
+		result = image_write_exr(exr_path, &image, NULL);
+		alarm(0);
+		setrlimit(RLIMIT_FSIZE, &usual);
+		if (result == GR_OK) {
+			assert_true(bytes > 300);
+			break;
+		}
+		assert_int_equal(result, GR_ERR_IO);
+		assert_int_not_equal(stat(exr_path, &there), 0);
+	}
+	signal(SIGXFSZ, SIG_DFL);
+	remove(exr_path);
+	assert_int_equal(mkfifo(exr_path, 0600), 0);
+	assert_int_equal(image_write_exr(exr_path, &image, NULL), GR_ERR_IO);
+	assert_int_equal(stat(exr_path, &there), 0);
+	assert_true(S_ISFIFO(there.st_mode));
+	image_finish(&image);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_exr_round_trip), cmocka_unit_test(test_exr_named),
 		cmocka_unit_test(test_exr_cut),        cmocka_unit_test(test_exr_changed),
 		cmocka_unit_test(test_missing),        cmocka_unit_test(test_png),
-		cmocka_unit_test(test_foreign),
+		cmocka_unit_test(test_foreign),         cmocka_unit_test(test_full),
 	};
 
 	gr_log_init("test_image", GR_LOG_INFO);
