@@ -135,7 +135,13 @@ int surfel_file_write(const struct surfel_set *set, const uint8_t key[SURFEL_KEY
 {
 	char *beside = NULL;
 	int result = GR_ERR_IO, fd, why;
+	struct stat there;
 
+	/* what is no file (a device, a pipe) is not put out of the way by one */
+	if (stat(path, &there) == 0 && !S_ISREG(there.st_mode)) {
+		errno = EEXIST;
+		return GR_ERR_IO;
+	}
 	if (asprintf(&beside, "%s.%ld.new", path, (long)getpid()) < 0)
 		return GR_ERR_NOMEM;
 	unlink(beside); /* of a process of that number which is no more */
