@@ -151,9 +151,10 @@ static bool update_slice(struct surfels *s, bool changed, bool lamps)
 
 	if (changed || !s->lit)
 		s->since_change = 0;
-	bool works = s->since_change < s->settle_gathers;
+	/* also a slice that comes late is gathered: what it changes here decides when work ends */
+	bool works = arrived || s->since_change < s->settle_gathers;
 
-	if (!arrived && !works)
+	if (!works)
 		return false;
 	/* the last frame's gathers have written over this node's slice */
 	surfels_share_restore(s);
@@ -161,8 +162,6 @@ static bool update_slice(struct surfels *s, bool changed, bool lamps)
 		surfels_smooth(s);
 		surfels_probes_gather(s);
 	}
-	if (!works)
-		return true;
 	if (changed || !s->lit)
 		surfels_relight(s, own, lamps);
 	s->lit = true;
