@@ -13,6 +13,7 @@
 
 void progress_start(struct progress *progress, const char *what)
 {
+	progress_hold_signals();
 	*progress = (struct progress){
 		.what = what,
 		.terminal = isatty(STDERR_FILENO) == 1,
@@ -64,18 +65,31 @@ void progress_show(struct progress *progress, double done, double seconds_left, 
 		note ? note : "");
 }
 
-void progress_end(struct progress *progress)
-{
-	if (progress->shown)
-		fprintf(stderr, "\r\033[K");
-	progress->shown = false;
-}
-
 static void ends(sigset_t *out)
 {
 	sigemptyset(out);
 	sigaddset(out, SIGINT);
 	sigaddset(out, SIGTERM);
+}
+
+/* One that came too late to stop the work does not stop what writes its results. */
+static void release_signals(void)
+{
+	const struct timespec at_once = { 0, 0 };
+	sigset_t set;
+
+	ends(&set);
+	while (sigtimedwait(&set, NULL, &at_once) >= 0)
+		;
+	sigprocmask(SIG_UNBLOCK, &set, NULL);
+}
+
+void progress_end(struct progress *progress)
+{
+	if (progress->shown)
+		fprintf(stderr, "\r\033[K");
+	progress->shown = false;
+	release_signals();
 }
 
 void progress_hold_signals(void)

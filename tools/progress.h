@@ -18,11 +18,11 @@ struct progress {
 	int64_t next_ns; /* of the next plain line */
 };
 
-/* what is kept, not copied. */
+/* Holds signals as below; what is kept, not copied. */
 void progress_start(struct progress *progress, const char *what);
 /* done 0..1; seconds_left negative: not known; note: further words, or NULL. */
 void progress_show(struct progress *progress, double done, double seconds_left, const char *note);
-/* Takes the line away. */
+/* Takes the line away, and signals end the program again. */
 void progress_end(struct progress *progress);
 
 /* "40 s", "3 min 20 s", "2 h 5 min"; returns text. */

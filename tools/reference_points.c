@@ -60,6 +60,15 @@ static bool parse_point(const char *line, struct reference_point *out)
 	return true;
 }
 
+/* "x,y,z,..." and not a number, NaN and infinity included. */
+static bool names_columns(const char *line)
+{
+	char *end;
+
+	strtod(line, &end);
+	return end == line && isalpha((unsigned char)line[0]);
+}
+
 static int read_lines(FILE *file, const char *path, struct points *points)
 {
 	char line[LINE_MOST];
@@ -72,7 +81,7 @@ static int read_lines(FILE *file, const char *path, struct points *points)
 		if (line[0] == '#' || line[strspn(line, " \t\r\n")] == '\0')
 			continue;
 		if (!whole || !parse_point(line, &point)) {
-			if (whole && number == 1 && isalpha((unsigned char)line[0]))
+			if (whole && number == 1 && names_columns(line))
 				continue;
 			fprintf(stderr, "%s:%d: not a point: x,y,z,nx,ny,nz are wanted, finite, the "
 					"normal not zero\n",

@@ -60,7 +60,16 @@ refused "is not X,Y,Z" --layout "$srcdir/layouts/cave4.cave" --wall front --head
 refused "has no camera 'nobody'" --camera nobody -o "$folder/x.exr"
 refused "needs --out"
 refused "--eye is left or right" --layout x --wall y --eye up -o "$folder/x.exr"
+printf 'nan,0,1,0,1,0\n' >"$folder/bad.csv"
+refused "bad.csv:1: not a point" --points "$folder/bad.csv" --points-out "$folder/x.csv"
 [ ! -e "$folder/x.exr" ] && [ ! -e "$folder/x.csv" ] || fail "a refused command wrote something"
+
+# A pipe is not replaced by a file, nor removed.
+mkfifo "$folder/pipe"
+timeout 60 "$grotto" bake "$scene" --out "$folder/pipe" >"$folder/bake.log" 2>&1
+"$grotto" reference "$scene" --size 16x16 -n 32 -o "$folder/pipe" >"$folder/pipe.log" 2>&1 &&
+	fail "a picture went into a pipe"
+[ -p "$folder/pipe" ] || fail "bake: the pipe is gone: $(cat "$folder/bake.log")"
 
 # Ctrl-C: what there is, and the sums to go on from.
 "$grotto" reference "$scene" --size 24x24 -n 100000000 --resume "$folder/long" -o "$folder/long.exr" \
