@@ -28,7 +28,7 @@ int bench_report_plot(FILE *out, const struct bench_report *report)
 {
 	const struct bench_view *view = report->view;
 	struct plot_point points[BENCH_CASES_MAX];
-	char title[160], subtitle[256], cost[96];
+	char title[160], subtitle[256], cost[96], noise[32];
 	struct plot plot = {
 		.title = title, .subtitle = subtitle, .cost_label = cost,
 		.error_label = "nRMSE of the light on surfaces, %", .points = points,
@@ -49,10 +49,14 @@ int bench_report_plot(FILE *out, const struct bench_report *report)
 		plot.count++;
 	}
 	snprintf(title, sizeof title, "%s: error of the indirect light over its cost", report->scene);
-	snprintf(subtitle, sizeof subtitle, "%s; medians and 10..90 %% of %d frames, %s; noise of the truth %.1f %%",
+	if (isnan(view->truth->noise))
+		snprintf(noise, sizeof noise, "not known");
+	else
+		snprintf(noise, sizeof noise, "%.1f %%", 100 * view->truth->noise);
+	snprintf(subtitle, sizeof subtitle, "%s; medians and 10..90 %% of %d frames, %s; noise of the truth %s",
 		 report->renderer, view->frames,
 		 report->count && report->results[0].moves ? "a lamp moving" : "the air changing",
-		 100 * view->truth->noise);
+		 noise);
 	snprintf(cost, sizeof cost, "what it adds to a frame of %d × %d pixels, ms", view->camera.pixels[0],
 		 view->camera.pixels[1]);
 	return plot_write(out, &plot);

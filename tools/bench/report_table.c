@@ -132,12 +132,14 @@ void bench_report_table(FILE *out, const struct bench_report *report)
 {
 	const struct bench_view *view = report->view;
 	struct table *table = calloc(1, sizeof *table);
+	char noise[2][CELL];
 
 	fprintf(out, "%s: camera %s, %d x %d pixels, %s\n", report->scene, view->camera.name,
 		view->camera.pixels[0], view->camera.pixels[1], report->renderer);
-	fprintf(out, "truth: %zu points of %d samples, noise %.2f %% (taken out of nRMSE); picture of %d samples, noise %.2f %%; ",
-		view->truth->count, report->point_samples, 100 * view->truth->noise,
-		report->picture_samples, 100 * view->truth->picture_noise);
+	put_number(noise[0], 100 * view->truth->noise, "%.2f %%");
+	put_number(noise[1], 100 * view->truth->picture_noise, "%.2f %%");
+	fprintf(out, "truth: %zu points of %d samples, noise %s (taken out of nRMSE); picture of %d samples, noise %s; ",
+		view->truth->count, report->point_samples, noise[0], report->picture_samples, noise[1]);
 	if (view->truth->kept)
 		fprintf(out, "kept from before\n");
 	else
