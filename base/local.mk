@@ -3,6 +3,7 @@ base_libgbase_a_SOURCES = \
 	base/clock.c base/clock.h \
 	base/cursor.h \
 	base/diag.c base/diag.h \
+	base/item.h \
 	base/log.c base/log.h \
 	base/pose.c base/pose.h \
 	base/result.c base/result.h

@@ -2,6 +2,8 @@
 
 #include "base/cursor.h"
 
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 void canonical_start(struct canonical *canonical, const char *kind)
@@ -42,4 +44,46 @@ void canonical_string(struct canonical *canonical, const char *text)
 void canonical_finish(struct canonical *canonical, uint8_t out[32])
 {
 	crypto_generichash_final(&canonical->state, out, 32);
+}
+
+struct canonical_items canonical_items_start(const char *kind, struct gr_item *items, size_t room)
+{
+	struct canonical_items c = { .items = items, .room = items ? room : 0 };
+
+	canonical_start(&c.whole, kind);
+	return c;
+}
+
+static void end_item(struct canonical_items *c)
+{
+	uint8_t hash[32];
+
+	if (!c->name[0])
+		return;
+	canonical_finish(&c->part, hash);
+	crypto_generichash_update(&c->whole.state, hash, sizeof hash);
+	if (c->count < c->room) {
+		memcpy(c->items[c->count].name, c->name, sizeof c->name);
+		memcpy(c->items[c->count].digest, hash, GR_ITEM_DIGEST);
+	}
+	c->count++;
+}
+
+struct canonical *canonical_item(struct canonical_items *c, const char *format, ...)
+{
+	va_list args;
+
+	end_item(c);
+	va_start(args, format);
+	vsnprintf(c->name, sizeof c->name, format, args);
+	va_end(args);
+	canonical_start(&c->part, "part");
+	return &c->part;
+}
+
+size_t canonical_items_finish(struct canonical_items *c, uint8_t out[32])
+{
+	end_item(c);
+	canonical_finish(&c->whole, out);
+	return c->count;
 }

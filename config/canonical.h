@@ -6,6 +6,8 @@
 #ifndef GROTTO_CONFIG_CANONICAL_H
 #define GROTTO_CONFIG_CANONICAL_H
 
+#include "base/item.h"
+
 #include <sodium.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -22,5 +24,23 @@ void canonical_floats(struct canonical *canonical, const float *values, size_t c
 /* NULL differs from "". */
 void canonical_string(struct canonical *canonical, const char *text);
 void canonical_finish(struct canonical *canonical, uint8_t out[32]);
+
+/*
+ * The same part by part: the hash is that of the parts' hashes, so that two
+ * forms that differ do so in a part that has a name.
+ */
+struct canonical_items {
+	struct canonical whole, part;
+	struct gr_item *items; /* NULL: only the hash is wanted */
+	size_t room, count;    /* count: parts there are, whether or not there was room */
+	char name[GR_ITEM_NAME];
+};
+
+struct canonical_items canonical_items_start(const char *kind, struct gr_item *items, size_t room);
+/* What is written to the result from now on belongs to the part of this name. */
+struct canonical *canonical_item(struct canonical_items *c, const char *format, ...)
+	__attribute__((format(printf, 2, 3)));
+/* The number of parts. */
+size_t canonical_items_finish(struct canonical_items *c, uint8_t out[32]);
 
 #endif

@@ -1,12 +1,12 @@
 #include "config/layout.h"
 
 #include "base/result.h"
-#include "config/canonical.h"
 #include "config/config_text.h"
 #include "config/layout_check.h"
 #include "config/layout_options.h"
 
 #include <math.h>
+#include <sodium.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -116,7 +116,7 @@ static struct layout *build(struct layout_file *file, const char *path)
 	}
 	build_walls(layout, file);
 	build_rest(layout, file);
-	layout_hash(layout, layout->hash);
+	layout_items(layout, NULL, 0, layout->hash);
 	return layout;
 }
 
@@ -228,54 +228,4 @@ char *layout_key_path(const struct layout *layout)
 	if (!layout->network.key_file)
 		return NULL;
 	return config_text_beside(layout->path, layout->network.key_file);
-}
-
-void layout_hash(const struct layout *layout, uint8_t out[32])
-{
-	const struct layout_network *network = &layout->network;
-	const struct layout_rates *rates = &layout->rates;
-	struct canonical c;
-
-	canonical_start(&c, "grotto layout 1");
-	canonical_u64(&c, layout->wall_count);
-	for (size_t i = 0; i < layout->wall_count; i++) {
-		const struct layout_wall *wall = &layout->walls[i];
-
-		canonical_string(&c, wall->name);
-		canonical_floats(&c, wall->lower_left, 3);
-		canonical_floats(&c, wall->lower_right, 3);
-		canonical_floats(&c, wall->upper_left, 3);
-		canonical_u64(&c, (uint64_t)wall->pixels[0]);
-		canonical_u64(&c, (uint64_t)wall->pixels[1]);
-	}
-	canonical_u64(&c, layout->node_count);
-	for (size_t i = 0; i < layout->node_count; i++) {
-		const struct layout_node *node = &layout->nodes[i];
-
-		canonical_string(&c, node->name);
-		canonical_u64(&c, node->wall);
-		canonical_floats(&c, node->part, 4);
-		canonical_string(&c, node->address);
-		canonical_u64(&c, node->port);
-		canonical_u64(&c, node->eyes);
-	}
-	canonical_u64(&c, network->cast);
-	canonical_string(&c, network->master_address);
-	canonical_u64(&c, network->master_port);
-	canonical_string(&c, network->group);
-	canonical_u64(&c, network->group_port);
-	canonical_u64(&c, (uint64_t)network->ttl);
-	canonical_u64(&c, (uint64_t)network->mtu);
-	canonical_floats(&c, &rates->frame_hz, 1);
-	canonical_u64(&c, (uint64_t)rates->barrier_deadline_ns);
-	canonical_u64(&c, (uint64_t)rates->evict_frames);
-	canonical_u64(&c, (uint64_t)rates->display_latency_ns);
-	canonical_floats(&c, &layout->eye_separation_m, 1);
-	canonical_floats(&c, layout->start_head.p, 3);
-	canonical_floats(&c, layout->start_head_angles, 3);
-	canonical_floats(&c, layout->start_wand.p, 3);
-	canonical_floats(&c, layout->start_wand_angles, 3);
-	canonical_floats(&c, layout->room_min, 3);
-	canonical_floats(&c, layout->room_max, 3);
-	canonical_finish(&c, out);
 }

@@ -13,6 +13,7 @@
 #define GROTTO_CONFIG_LAYOUT_H
 
 #include "base/diag.h"
+#include "base/item.h"
 #include "base/pose.h"
 
 #include <stdbool.h>
@@ -124,7 +125,7 @@ struct layout {
 	float eye_separation_m;
 	vec3 room_min, room_max; /* where eyes may be; from the walls unless given */
 	char *control_socket;    /* path of the master's control socket */
-	uint8_t hash[32];        /* see layout_hash; nodes compare it at join */
+	uint8_t hash[32];        /* see layout_items; nodes compare it at join */
 	vec3 start_head_angles;  /* as the file gives them: heading, pitch, roll; radians */
 	vec3 start_wand_angles;
 	bool room_given;         /* room_min and room_max are the file's own */
@@ -147,13 +148,17 @@ void layout_destroy(struct layout **layout);
  */
 int layout_write(FILE *file, const struct layout *layout);
 /*
- * BLAKE2b-256 of the canonical form of what all machines of a room must agree
- * on: walls, nodes (name, wall, part, address, port, eyes), network, rates,
+ * What all machines of a room must agree on, part by part in the order of the
+ * file, up to `room` of them (items may be NULL), and the BLAKE2b-256 of the
+ * canonical form of all: walls, nodes (name, wall, part, address, port, eyes), network, rates,
  * start, room, eye separation. Not of paths, comments, the key file, the
  * trackers and the control socket (the master's own), nor of target, display,
- * monitor and gpu (one node's own). layout_load has stored it in hash.
+ * monitor and gpu (one node's own). layout_load has stored it in hash. Returns the
+ * number of parts, at most LAYOUT_ITEMS_MAX.
  */
-void layout_hash(const struct layout *layout, uint8_t out[32]);
+#define LAYOUT_ITEMS_MAX (2 * LAYOUT_MAX_NODES + 16)
+size_t layout_items(const struct layout *layout, struct gr_item *items, size_t room,
+		    uint8_t hash[32]);
 
 /* Index of the node of that name, or -1. */
 int layout_find_node(const struct layout *layout, const char *name);

@@ -68,7 +68,7 @@ static struct scene_file *build(struct scene_form *form, const char *path)
 	file->shadow_pixels = form->shadow_pixels;
 	file->room_heading_rad = form->room.heading_rad;
 	gr_pose_heading(form->room.position, form->room.heading_rad, &file->room);
-	scene_file_hash(file, file->hash);
+	scene_file_items(file, NULL, 0, file->hash);
 	return file;
 }
 
@@ -217,52 +217,66 @@ static void hash_environment(struct canonical *c, const struct scene_environment
 		canonical_u64(c, e->upper_only);
 }
 
-void scene_file_hash(const struct scene_file *file, uint8_t out[32])
+static void hash_gi(struct canonical *c, const struct scene_gi *gi)
 {
-	const struct scene_gi *gi = &file->gi;
-	const struct scene_tone *tone = &file->tone;
-	struct canonical c;
+	canonical_u64(c, gi->method);
+	canonical_u64(c, gi->lpv_mode);
+	canonical_u64(c, (uint64_t)gi->lattice);
+	canonical_u64(c, (uint64_t)gi->steps);
+	canonical_floats(c, &gi->incremental, 1);
+	canonical_u64(c, (uint64_t)gi->rsm_pixels);
+	canonical_u64(c, (uint64_t)gi->link_rays);
+	canonical_floats(c, gi->albedo_override, 3);
+	canonical_u64(c, gi->share);
+	canonical_floats(c, &gi->budget_ms, 1);
+	canonical_floats(c, &gi->spacing_m, 1);
+	canonical_u64(c, (uint64_t)gi->links);
+	canonical_u64(c, (uint64_t)gi->gathers);
+	canonical_u64(c, (uint64_t)gi->taps);
+	canonical_u64(c, (uint64_t)gi->probes);
+}
 
-	canonical_start(&c, "grotto scene 2");
-	canonical_floats(&c, &file->model_scale, 1);
-	canonical_floats(&c, &file->emission_scale, 1);
-	canonical_u64(&c, file->double_sided);
-	canonical_u64(&c, file->lamp_count);
-	for (size_t i = 0; i < file->lamp_count; i++)
-		hash_lamp(&c, &file->lamps[i]);
-	canonical_u64(&c, gi->method);
-	canonical_u64(&c, gi->lpv_mode);
-	canonical_u64(&c, (uint64_t)gi->lattice);
-	canonical_u64(&c, (uint64_t)gi->steps);
-	canonical_floats(&c, &gi->incremental, 1);
-	canonical_u64(&c, (uint64_t)gi->rsm_pixels);
-	canonical_u64(&c, (uint64_t)gi->link_rays);
-	canonical_floats(&c, gi->albedo_override, 3);
-	canonical_u64(&c, gi->share);
-	canonical_floats(&c, &gi->budget_ms, 1);
-	canonical_floats(&c, &gi->spacing_m, 1);
-	canonical_u64(&c, (uint64_t)gi->links);
-	canonical_u64(&c, (uint64_t)gi->gathers);
-	canonical_u64(&c, (uint64_t)gi->taps);
-	canonical_u64(&c, (uint64_t)gi->probes);
-	canonical_u64(&c, file->surface_count);
-	for (size_t i = 0; i < file->surface_count; i++)
-		hash_surface(&c, &file->surfaces[i]);
-	hash_environment(&c, &file->environment);
-	canonical_floats(&c, &file->absorption_per_m, 1);
-	canonical_floats(&c, &file->scattering_per_m, 1);
-	canonical_floats(&c, file->background, 3);
-	canonical_u64(&c, tone->curve);
-	canonical_floats(&c, &tone->exposure, 1);
-	canonical_u64(&c, tone->srgb);
+static void hash_tone(struct canonical *c, const struct scene_tone *tone)
+{
+	canonical_u64(c, tone->curve);
+	canonical_floats(c, &tone->exposure, 1);
+	canonical_u64(c, tone->srgb);
 	if (!tone->srgb) {
-		canonical_floats(&c, &tone->gamma_display, 1);
-		canonical_floats(&c, &tone->gamma_end_to_end, 1);
+		canonical_floats(c, &tone->gamma_display, 1);
+		canonical_floats(c, &tone->gamma_end_to_end, 1);
 	}
-	canonical_floats(&c, &file->near_m, 1);
-	canonical_floats(&c, &file->far_m, 1);
-	canonical_u64(&c, (uint64_t)file->shadow_pixels);
-	canonical_floats(&c, file->room.p, 3);
-	canonical_floats(&c, &file->room_heading_rad, 1);
-	canonical_finish(&c, out);
+}
+
+size_t scene_file_items(const struct scene_file *file, struct gr_item *items, size_t room,
+			uint8_t hash[32])
+{
+	struct canonical_items c = canonical_items_start("grotto scene 3", items, room);
+	struct canonical *part;
+
+	canonical_floats(canonical_item(&c, "model_scale"), &file->model_scale, 1);
+	canonical_floats(canonical_item(&c, "emission_scale"), &file->emission_scale, 1);
+	canonical_u64(canonical_item(&c, "double_sided"), file->double_sided);
+	canonical_floats(canonical_item(&c, "background"), file->background, 3);
+	part = canonical_item(&c, "near_m and far_m");
+	canonical_floats(part, &file->near_m, 1);
+	canonical_floats(part, &file->far_m, 1);
+	canonical_u64(canonical_item(&c, "shadow_pixels"), (uint64_t)file->shadow_pixels);
+	part = canonical_item(&c, "lamps");
+	canonical_u64(part, file->lamp_count);
+	for (size_t i = 0; i < file->lamp_count; i++)
+		hash_lamp(part, &file->lamps[i]);
+	part = canonical_item(&c, "materials");
+	canonical_u64(part, file->surface_count);
+	for (size_t i = 0; i < file->surface_count; i++)
+		hash_surface(part, &file->surfaces[i]);
+	hash_environment(canonical_item(&c, "environment"), &file->environment);
+	hash_gi(canonical_item(&c, "gi"), &file->gi);
+	part = canonical_item(&c, "medium");
+	canonical_floats(part, &file->absorption_per_m, 1);
+	canonical_floats(part, &file->scattering_per_m, 1);
+	hash_tone(canonical_item(&c, "tone"), &file->tone);
+	part = canonical_item(&c, "room");
+	canonical_floats(part, file->room.p, 3);
+	canonical_floats(part, &file->room_heading_rad, 1);
+	return canonical_items_finish(&c, hash);
 }

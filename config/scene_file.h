@@ -11,6 +11,7 @@
 #define GROTTO_CONFIG_SCENE_FILE_H
 
 #include "base/diag.h"
+#include "base/item.h"
 #include "base/pose.h"
 
 #include <stdbool.h>
@@ -151,7 +152,7 @@ struct scene_file {
 	int shadow_pixels;
 	struct gr_pose room; /* T_scene_room: where the CAVE stands in the scene */
 	bool double_sided;   /* treat every material as two-sided */
-	uint8_t hash[32];    /* see scene_file_hash; the model's content is hashed by the renderer */
+	uint8_t hash[32];    /* see scene_file_items; the model's content is hashed by the renderer */
 	float emission_scale; /* radiance in W/(m^2 sr) of a material whose emission is 1 */
 	float room_heading_rad; /* as the file gives it; room.q follows from it */
 };
@@ -174,9 +175,11 @@ float scene_tone_gamma_encode(const struct scene_tone *tone);
 /* Writes a file that loads to the same values. GR_OK, GR_ERR_IO, GR_ERR_NOMEM. */
 int scene_file_write(FILE *out, const struct scene_file *file);
 /*
- * BLAKE2b-256 of the canonical form of what all machines must agree on:
- * everything but name, paths and cameras. scene_file_load has stored it in hash.
+ * What all machines must agree on, as layout_items: everything but name, paths
+ * and cameras. scene_file_load has stored the BLAKE2b-256 of it in hash.
  */
-void scene_file_hash(const struct scene_file *file, uint8_t out[32]);
+#define SCENE_FILE_ITEMS_MAX 13
+size_t scene_file_items(const struct scene_file *file, struct gr_item *items, size_t room,
+			uint8_t hash[32]);
 
 #endif

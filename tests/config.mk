@@ -12,6 +12,12 @@ tests_unit_test_layout_SOURCES = tests/unit/test_layout.c tests/unit/unit.h test
 tests_unit_test_layout_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_layout_LDADD = $(CONFIG_LIBS) $(CMOCKA_LIBS)
 
+check_PROGRAMS += tests/unit/test_layout_items
+TESTS += tests/unit/test_layout_items
+tests_unit_test_layout_items_SOURCES = tests/unit/test_layout_items.c tests/unit/unit.h \
+	tests/unit/unit_config.h
+tests_unit_test_layout_items_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_layout_items_LDADD = $(CONFIG_LIBS) $(CMOCKA_LIBS)
 check_PROGRAMS += tests/unit/test_layout_walls
 TESTS += tests/unit/test_layout_walls
 tests_unit_test_layout_walls_SOURCES = tests/unit/test_layout_walls.c tests/unit/unit.h \

@@ -102,5 +102,12 @@ void scene_hash(struct scene *scene);
 /* The hash that nodes compare at join: scene file and model content together. */
 void scene_content_hash(const struct scene_file *file, const struct scene *scene,
 			uint8_t out[32]);
+/*
+ * The parts of it by name: those of the scene file, then the files that it names.
+ * At most SCENE_ITEMS_MAX, as layout_items. Reads tables and environment whole.
+ */
+#define SCENE_ITEMS_MAX (SCENE_FILE_ITEMS_MAX + 3)
+size_t scene_content_items(const struct scene_file *file, const struct scene *scene,
+			   struct gr_item items[SCENE_ITEMS_MAX]);
 
 #endif

@@ -4,6 +4,8 @@
 #include "renderer/scene/scene.h"
 
 #include <sodium.h>
+#include <stdio.h>
+#include <string.h>
 
 static void hash_u64(crypto_generichash_state *state, uint64_t value)
 {
@@ -88,4 +90,35 @@ void scene_content_hash(const struct scene_file *file, const struct scene *scene
 	crypto_generichash_update(&state, file->hash, sizeof file->hash);
 	crypto_generichash_update(&state, scene->hash, sizeof scene->hash);
 	crypto_generichash_final(&state, out, 32);
+}
+
+static struct gr_item *add_item(struct gr_item *item, const char *name, const uint8_t hash[32])
+{
+	snprintf(item->name, sizeof item->name, "%s", name);
+	memcpy(item->digest, hash, sizeof item->digest);
+	return item + 1;
+}
+
+size_t scene_content_items(const struct scene_file *file, const struct scene *scene,
+			   struct gr_item items[SCENE_ITEMS_MAX])
+{
+	struct gr_item *end = items;
+	uint8_t hash[32] = { 0 };
+	crypto_generichash_state state;
+
+	end += scene_file_items(file, items, SCENE_FILE_ITEMS_MAX, hash);
+	crypto_generichash_init(&state, NULL, 0, sizeof hash);
+	for (size_t i = 0; i < scene->table_count; i++) {
+		brdf_table_hash(scene->tables[i], hash);
+		hash_bytes(&state, hash, sizeof hash);
+	}
+	crypto_generichash_final(&state, hash, sizeof hash);
+	end = add_item(end, "a file of its materials", hash);
+	memset(hash, 0, sizeof hash);
+	if (scene->environment)
+		environment_hash(scene->environment, hash);
+	end = add_item(end, "the file of its environment", hash);
+	/* Of all of these together, so the model's own when they are alike. */
+	end = add_item(end, "its model", scene->hash);
+	return (size_t)(end - items);
 }

@@ -326,35 +326,45 @@ static void test_hash(void **state)
 {
 	static const struct {
 		const char *find, *replace;
-		bool differs;
+		const char *first; /* the part that differs, NULL: none does */
 	} cases[] = {
-		{ "name = \"room\"", "name = \"other\"", false },
-		{ "models/room.gltf", "models/copy.gltf", false },
-		{ "vfov_deg = 45.0", "vfov_deg = 46.0", false },
-		{ "intensity = [1, 2, 3]", "intensity = (1, 2.0, 3)", false },
-		{ "intensity = [1, 2, 3]", "intensity = [1, 2, 4]", true },
-		{ "direction = [0.0, -3.0, 4.0]", "direction = [0.0, -0.6, 0.8]", false },
-		{ "on = false", "on = true", true },
-		{ "cone_deg = 80.0", "cone_deg = 81.0", true },
-		{ "orbit_radius_m = 0.7", "orbit_radius_m = 0.8", true },
-		{ "lattice = 24", "lattice = 25", true },
-		{ "ambient = \"dark\"", "ambient = \"dim\"", true },
-		{ "ambient = \"dark\"", "gamma_end_to_end = 1.5", false },
-		{ "heading_deg = 90.0", "heading_deg = 91.0", true },
-		{ "emission_scale = 3.5", "emission_scale = 3.6", true },
-		{ "double_sided = true", "double_sided = false", true },
+		{ "name = \"room\"", "name = \"other\"", NULL },
+		{ "models/room.gltf", "models/copy.gltf", NULL },
+		{ "vfov_deg = 45.0", "vfov_deg = 46.0", NULL },
+		{ "intensity = [1, 2, 3]", "intensity = (1, 2.0, 3)", NULL },
+		{ "intensity = [1, 2, 3]", "intensity = [1, 2, 4]", "lamps" },
+		{ "direction = [0.0, -3.0, 4.0]", "direction = [0.0, -0.6, 0.8]", NULL },
+		{ "on = false", "on = true", "lamps" },
+		{ "cone_deg = 80.0", "cone_deg = 81.0", "lamps" },
+		{ "orbit_radius_m = 0.7", "orbit_radius_m = 0.8", "lamps" },
+		{ "lattice = 24", "lattice = 25", "gi" },
+		{ "ambient = \"dark\"", "ambient = \"dim\"", "tone" },
+		{ "ambient = \"dark\"", "gamma_end_to_end = 1.5", NULL },
+		{ "heading_deg = 90.0", "heading_deg = 91.0", "room" },
+		{ "emission_scale = 3.5", "emission_scale = 3.6", "emission_scale" },
+		{ "double_sided = true", "double_sided = false", "double_sided" },
 	};
 	struct gr_diag diag = { 0 };
+	struct gr_item items[2][SCENE_FILE_ITEMS_MAX];
 	struct scene_file *file, *other;
+	uint8_t hash[32];
+	size_t count, k;
 
 	(void)state;
 	assert_int_equal(parse(base, &file, &diag), GR_OK);
+	count = scene_file_items(file, items[0], SCENE_FILE_ITEMS_MAX, hash);
+	assert_true(count <= SCENE_FILE_ITEMS_MAX);
+	assert_memory_equal(hash, file->hash, sizeof hash);
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
 		char *text = unit_replace(base, cases[i].find, cases[i].replace);
 
 		assert_int_equal(parse(text, &other, &diag), GR_OK);
-		if (cases[i].differs != !!memcmp(file->hash, other->hash, 32))
+		if (!cases[i].first != !memcmp(file->hash, other->hash, 32))
 			fail_msg("\"%s\" for \"%s\"", cases[i].replace, cases[i].find);
+		assert_int_equal(scene_file_items(other, items[1], SCENE_FILE_ITEMS_MAX, hash), count);
+		for (k = 0; k < count && !memcmp(items[0][k].digest, items[1][k].digest, GR_ITEM_DIGEST); k++)
+			;
+		assert_string_equal(k < count ? items[0][k].name : "", cases[i].first ? cases[i].first : "");
 		scene_file_destroy(&other);
 		free(text);
 	}
