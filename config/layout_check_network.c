@@ -105,6 +105,31 @@ static void check_interface(struct options_reader *reader, const struct layout_f
 			      name, IF_NAMESIZE - 1);
 }
 
+#define NEEDS_KEY "so every machine needs the cluster's key: network.key_file = \"/etc/grotto/cluster.key\""
+
+/* Where the group's datagrams go when there is no key. */
+static void check_group_key(struct options_reader *reader, const struct layout_file *file)
+{
+	const struct layout_network *network = &file->network.network;
+	struct address group;
+
+	if (network->cast == LAYOUT_BROADCAST) {
+		/* An interface does not hold a broadcast, its address does. */
+		if (network->group && address_parse(network->group, &group) && !address_loopback(&group))
+			options_fault(reader, GR_DIAG_ERROR, file->at, "network.group",
+				      "%s is not on loopback, " NEEDS_KEY ", or cast to 127.255.255.255",
+				      network->group);
+	} else if (network->cast != LAYOUT_UNICAST && !network->interface) {
+		options_fault(reader, GR_DIAG_ERROR, file->at, "network.interface",
+			      "missing, and the system's choice is not loopback, " NEEDS_KEY
+			      ", or say interface = \"lo\"");
+	} else if (network->cast != LAYOUT_UNICAST && strcmp(network->interface, "lo")) {
+		options_fault(reader, GR_DIAG_ERROR, file->at, "network.interface",
+			      "\"%.80s\" is not loopback, " NEEDS_KEY ", or say \"lo\"",
+			      network->interface);
+	}
+}
+
 /* Who holds no key may only be talked to where nobody else listens. */
 static void check_key(struct options_reader *reader, const struct layout_file *file,
 		      const struct endpoint *ends, size_t count)
@@ -113,19 +138,18 @@ static void check_key(struct options_reader *reader, const struct layout_file *f
 
 	if (network->key_file || options_given(file->network.at, "key_file"))
 		return;
-	for (size_t i = 0; i < count; i++)
-		if (!address_loopback(&ends[i].address)) {
-			options_fault(reader, GR_DIAG_ERROR, file->at, "network.key_file",
-				      "missing; %s is not on loopback, so every machine needs the cluster's "
-				      "key: key_file = \"/etc/grotto/cluster.key\"",
-				      ends[i].node ? ends[i].node->node.address :
-						     network->master_address);
-			return;
-		}
-	if (network->cast != LAYOUT_UNICAST &&
-	    (!network->interface || strcmp(network->interface, "lo")))
-		options_fault(reader, GR_DIAG_ERROR, file->at, "network.key_file",
-			      "missing; without a key, cast must be \"unicast\" or interface \"lo\"");
+	for (size_t i = 0; i < count; i++) {
+		const struct layout_file_node *node = ends[i].node;
+
+		if (address_loopback(&ends[i].address))
+			continue;
+		options_fault(reader, GR_DIAG_ERROR, node ? node->at : file->at,
+			      node ? "address" : "network.master_address",
+			      "%s is not on loopback, " NEEDS_KEY,
+			      node ? node->node.address : network->master_address);
+		return;
+	}
+	check_group_key(reader, file);
 }
 
 void layout_check_network(struct options_reader *reader, struct layout_file *file)
