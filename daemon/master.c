@@ -371,8 +371,7 @@ static int create_protocol(struct master *m)
 	for (size_t i = 0; i < layout->node_count; i++)
 		names[i] = layout->nodes[i].name;
 	memcpy(params.key, m->params.key, sizeof params.key);
-	memcpy(params.layout_hash, layout->hash, sizeof params.layout_hash);
-	memcpy(params.scene_hash, m->params.content_hash, sizeof params.scene_hash);
+	params.contents = m->params.contents;
 	r = fdp_master_create(&m->fdp, &params, &ops);
 	sodium_memzero(params.key, sizeof params.key);
 	return r;

@@ -27,7 +27,7 @@
 struct master_params {
 	const struct layout *layout;
 	const struct scene_file *scene;
-	uint8_t content_hash[32];
+	struct fdp_contents contents;
 	uint8_t key[FDP_KEY_BYTES];
 	uint64_t frames; /* end after so many; 0: for ever */
 	unsigned expect; /* nodes that must be live before the first frame, at least 1 */

@@ -58,7 +58,7 @@ static void fill_params(struct master_params *params, const struct opened *o,
 					      (unsigned)options->expect,
 		.frame_clock = options->frame_clock,
 	};
-	memcpy(params->content_hash, o->files.content_hash, sizeof params->content_hash);
+	params->contents = room_files_contents(&o->files);
 	memcpy(params->key, o->files.key, sizeof params->key);
 }
 

@@ -323,8 +323,7 @@ static int create_protocol(struct node *n)
 	int r;
 
 	memcpy(params.key, n->params.key, sizeof params.key);
-	memcpy(params.layout_hash, layout->hash, sizeof params.layout_hash);
-	memcpy(params.scene_hash, n->params.content_hash, sizeof params.scene_hash);
+	params.contents = n->params.contents;
 	r = fdp_node_create(&n->fdp, &params, &ops);
 	sodium_memzero(params.key, sizeof params.key);
 	return r;

@@ -29,7 +29,7 @@ struct node_params {
 	const struct layout *layout;
 	size_t index; /* of this node */
 	const struct scene_file *scene_file;
-	uint8_t content_hash[32];
+	struct fdp_contents contents;
 	uint64_t plan; /* of gi.method = "auto" (renderer/gi/plan.h); 0: the scene file says it */
 	uint8_t key[FDP_KEY_BYTES];
 	bool window;    /* the target is a window, which must be answered */

@@ -204,7 +204,7 @@ static int open_all(struct opened *o, const struct node_options *options)
 		r = GR_ERR_CONFIG;
 	if (r < 0)
 		return r;
-	memcpy(params.content_hash, o->files.content_hash, sizeof params.content_hash);
+	params.contents = room_files_contents(&o->files);
 	memcpy(params.key, o->files.key, sizeof params.key);
 	if (renderer_plan(o->renderer))
 		params.plan = renderer_plan(o->renderer)->hash;

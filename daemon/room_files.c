@@ -8,6 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+_Static_assert(LAYOUT_ITEMS_MAX + SCENE_ITEMS_MAX <= FDP_ITEMS_MAX,
+	       "every part of the largest room must fit into a JOIN");
+
 static int load_key(struct room_files *out, const struct common_options *options,
 		    struct gr_diag *diag)
 {
@@ -44,9 +47,24 @@ int room_files_load(struct room_files *out, const struct common_options *options
 		return r;
 	}
 	scene_content_hash(out->scene_file, out->scene, out->content_hash);
+	out->layout_item_count = layout_items(out->layout, out->layout_items, LAYOUT_ITEMS_MAX,
+					      out->layout->hash);
+	out->scene_item_count = scene_content_items(out->scene_file, out->scene, out->scene_items);
 	if (options->deadline_ms > 0)
 		out->layout->rates.barrier_deadline_ns = options->deadline_ms * GR_NS_PER_MS;
 	return GR_OK;
+}
+
+struct fdp_contents room_files_contents(const struct room_files *files)
+{
+	struct fdp_contents contents = {
+		.layout = files->layout_items, .layout_count = files->layout_item_count,
+		.scene = files->scene_items, .scene_count = files->scene_item_count,
+	};
+
+	memcpy(contents.layout_hash, files->layout->hash, sizeof contents.layout_hash);
+	memcpy(contents.scene_hash, files->content_hash, sizeof contents.scene_hash);
+	return contents;
 }
 
 void room_files_finish(struct room_files *files)

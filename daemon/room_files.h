@@ -8,7 +8,7 @@
 #include "config/layout.h"
 #include "config/scene_file.h"
 #include "daemon/options.h"
-#include "protocol/key.h"
+#include "protocol/master.h"
 #include "renderer/scene/scene.h"
 
 struct room_files {
@@ -17,7 +17,13 @@ struct room_files {
 	struct scene *scene;
 	uint8_t key[FDP_KEY_BYTES];
 	uint8_t content_hash[32]; /* scene file and model, compared at join */
+	/* The parts of layout and scene, by name. */
+	struct gr_item layout_items[LAYOUT_ITEMS_MAX], scene_items[SCENE_ITEMS_MAX];
+	size_t layout_item_count, scene_item_count;
 };
+
+/* What all machines must have alike; points into files. */
+struct fdp_contents room_files_contents(const struct room_files *files);
 
 /*
  * GR_OK or a negative result after logging. A deadline given on the command

@@ -7,6 +7,7 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/master.c protocol/master.h protocol/master_private.h \
 	protocol/master_join.c \
 	protocol/master_receive.c \
+	protocol/master_refuse.c \
 	protocol/master_repair.c \
 	protocol/master_share.c \
 	protocol/message.c protocol/message.h \
@@ -19,5 +20,6 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/peer.c protocol/peer.h \
 	protocol/replay.h \
 	protocol/share.c protocol/share.h \
+	protocol/session_keys.c protocol/session_keys.h \
 	protocol/wire.c protocol/wire.h
 protocol_libgprotocol_a_CFLAGS = $(AM_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS)

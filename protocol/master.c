@@ -40,8 +40,15 @@ uint64_t fdp_master_mask(const struct fdp_master *m, bool (*test)(enum fdp_peer_
 	return mask;
 }
 
+static size_t count_bits(uint64_t mask)
+{
+	return (size_t)__builtin_popcountll(mask);
+}
+
 static int check_params(const struct fdp_master_params *p, const struct fdp_master_ops *ops)
 {
+	if (p->contents.layout_count + p->contents.scene_count > FDP_ITEMS_MAX)
+		return GR_ERR_RANGE;
 	if (!p->session || !p->node_count || p->node_count > FDP_MAX_NODES || !p->node_names ||
 	    p->datagram_max < FDP_DATAGRAM_MIN || p->datagram_max > FDP_DATAGRAM_MAX ||
 	    p->deadline_ns <= 0 || p->probe_ns < 0 || !p->evict_frames || !ops->send || !ops->event)
@@ -88,17 +95,20 @@ int fdp_master_create(struct fdp_master **out, const struct fdp_master_params *p
 		m->params.probe_ns = default_probe(params->deadline_ns);
 	m->ops = *ops;
 	m->answers = -1;
+	randombytes_buf(m->nonce, sizeof m->nonce);
+	fdp_key_to_nodes(m->params.key, params->session, m->nonce, m->key_to_nodes);
 	m->gate = (struct fdp_gate){
-		.key = m->params.key,
+		.cluster_key = m->params.key,
+		.keys = (const uint8_t(*)[FDP_KEY_BYTES])m->node_keys,
 		.session = params->session,
 		.kinds = MASTER_KINDS | (params->share_bytes ? SHARE_KINDS : 0),
-		.any_session_kinds = 1u << FDP_JOIN,
 		.any_version_kinds = 1u << FDP_JOIN,
 		.first_sender = 0,
 		.last_sender = (uint16_t)(params->node_count - 1),
 	};
 	m->out = (struct fdp_outbox){
-		.key = m->params.key,
+		.cluster_key = m->params.key,
+		.key = m->key_to_nodes,
 		.sender = FDP_SENDER_MASTER,
 		.session = params->session,
 		.datagram_max = params->datagram_max,
@@ -134,6 +144,8 @@ void fdp_master_destroy(struct fdp_master **master)
 	fdp_share_finish(&m->share);
 	param_state_destroy(&m->state);
 	sodium_memzero(m->params.key, sizeof m->params.key);
+	sodium_memzero(m->key_to_nodes, sizeof m->key_to_nodes);
+	sodium_memzero(m->node_keys, sizeof m->node_keys);
 	free(m);
 }
 
@@ -343,13 +355,30 @@ static void tend_joiners(struct fdp_master *m, int64_t now_ns)
 	refresh_snapshots(m, now_ns);
 }
 
+/* How nodes that wait, or sit in an older session, find us: as long as somebody is missing. */
+static void send_beacon(struct fdp_master *m)
+{
+	const uint64_t present = fdp_master_mask(m, fdp_peer_present);
+
+	if (count_bits(present) == m->params.node_count)
+		return;
+	for (size_t i = 0; i < m->params.node_count; i++) {
+		if (!m->params.multicast && present & BIT(i))
+			continue;
+		fdp_outbox_send(&m->out, m->params.multicast ? FDP_TO_ALL : (int)i, FDP_BEACON,
+				fdp_beacon_encode(fdp_outbox_body(&m->out), FDP_BODY_MAX));
+		if (m->params.multicast)
+			break;
+	}
+}
+
 void fdp_master_tick(struct fdp_master *m, int64_t now_ns)
 {
 	tend_joiners(m, now_ns);
 	if (now_ns >= m->keepalive_at) {
-		/* Also how nodes that wait, or sit in an older session, find us. */
 		m->keepalive_at = now_ns + FDP_KEEPALIVE_NS;
 		fdp_master_announce(m, FDP_TO_ALL, FDP_PROBE);
+		send_beacon(m);
 	}
 	if (!m->underway)
 		return;
@@ -405,11 +434,6 @@ void fdp_master_set_deadline(struct fdp_master *m, int64_t deadline_ns)
 bool fdp_master_idle(const struct fdp_master *m)
 {
 	return !m->underway;
-}
-
-static size_t count_bits(uint64_t mask)
-{
-	return (size_t)__builtin_popcountll(mask);
 }
 
 size_t fdp_master_live(const struct fdp_master *m)

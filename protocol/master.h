@@ -16,13 +16,16 @@
 #include "protocol/key.h"
 #include "protocol/params.h"
 
+#include "base/item.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #define FDP_MAX_NODES 64
 #define FDP_TO_ALL (-1)
-#define FDP_REASON_MAX 160
+#define FDP_REASON_MAX 224
+#define FDP_ITEMS_MAX 166 /* parts of layout and scene together, see fdp_join */
 #define FDP_SHARE_MAX (4u << 20) /* bytes of the light that nodes share out, all slices together */
 
 enum fdp_peer_state {
@@ -52,10 +55,21 @@ struct fdp_master_event {
 	const char *reason; /* valid during the call */
 };
 
+/*
+ * What all must have alike, as hashes, and the parts of each in the order of
+ * the file: at most FDP_ITEMS_MAX together, borrowed; without them a
+ * difference is told and not named.
+ */
+struct fdp_contents {
+	uint8_t layout_hash[32], scene_hash[32];
+	const struct gr_item *layout, *scene;
+	size_t layout_count, scene_count;
+};
+
 struct fdp_master_params {
 	uint64_t session; /* random, new at every start, not 0 */
 	uint8_t key[FDP_KEY_BYTES];
-	uint8_t layout_hash[32], scene_hash[32];
+	struct fdp_contents contents;
 	const char *const *node_names;
 	size_t node_count;
 	size_t datagram_max; /* UDP payload bytes: MTU less IP and UDP headers */

@@ -6,9 +6,6 @@
  */
 #include "protocol/master_private.h"
 
-#include "base/cursor.h"
-#include "base/result.h"
-
 #include <sodium.h>
 #include <stdio.h>
 #include <string.h>
@@ -17,84 +14,7 @@ static void make_challenge(const struct fdp_master *m, unsigned node,
 			   const uint8_t nonce[FDP_NONCE_BYTES],
 			   uint8_t challenge[FDP_NONCE_BYTES])
 {
-	static const char purpose[] = "fdp join challenge";
-	uint8_t text[sizeof purpose + 8 + 8 + 8 + FDP_NONCE_BYTES];
-	struct gr_writer w = gr_writer(text, sizeof text);
-
-	gr_write_bytes(&w, purpose, sizeof purpose);
-	gr_write_u64(&w, m->params.session);
-	gr_write_u64(&w, node);
-	gr_write_u64(&w, m->peers[node].joins);
-	gr_write_bytes(&w, nonce, FDP_NONCE_BYTES);
-	crypto_generichash(challenge, FDP_NONCE_BYTES, text, w.len, m->params.key, FDP_KEY_BYTES);
-}
-
-static void short_hex(const uint8_t hash[32], char text[17])
-{
-	sodium_bin2hex(text, 17, hash, 8);
-}
-
-static bool hashes_differ(const char *what, const uint8_t theirs[32], const uint8_t ours[32],
-			  char reason[FDP_REASON_MAX])
-{
-	char a[17], b[17];
-
-	if (!memcmp(theirs, ours, 32))
-		return false;
-	short_hex(theirs, a);
-	short_hex(ours, b);
-	snprintf(reason, FDP_REASON_MAX, "another %s: the node's hash is %s.., the master's %s..",
-		 what, a, b);
-	return true;
-}
-
-/*
- * Nodes whose light is not computed alike would show a seam. The master draws
- * nothing and has no plan of its own: who is in the room decides.
- */
-static bool plans_differ(const struct fdp_master *m, const struct fdp_join *join,
-			 char reason[FDP_REASON_MAX])
-{
-	for (size_t i = 0; i < m->params.node_count; i++) {
-		const struct fdp_peer *peer = &m->peers[i];
-
-		if (i == join->index || !fdp_peer_present(peer->state) || peer->plan == join->plan)
-			continue;
-		snprintf(reason, FDP_REASON_MAX,
-			 "another plan of the light: the node's %016llx, '%s' has %016llx; name gi.method and its settings in the scene file",
-			 (unsigned long long)join->plan, m->names[i], (unsigned long long)peer->plan);
-		return true;
-	}
-	return false;
-}
-
-/* Writes both values into the reason: they must differ where a person can see it. */
-static bool refuses(const struct fdp_master *m, unsigned version, const struct fdp_join *join,
-		    char reason[FDP_REASON_MAX])
-{
-	const uint64_t table = param_table_hash();
-
-	if (version != FDP_VERSION || join->version != FDP_VERSION) {
-		snprintf(reason, FDP_REASON_MAX,
-			 "another protocol version: the node speaks %u, the master %u",
-			 (unsigned)(version != FDP_VERSION ? version : join->version), (unsigned)FDP_VERSION);
-		return true;
-	}
-	if (strcmp(join->name, m->names[join->index])) {
-		snprintf(reason, FDP_REASON_MAX,
-			 "another name: node %u calls itself '%s', the master's layout says '%s'",
-			 (unsigned)join->index, join->name, m->names[join->index]);
-		return true;
-	}
-	if (join->table_hash != table) {
-		snprintf(reason, FDP_REASON_MAX,
-			 "another parameter table: the node's hash is %016llx, the master's %016llx",
-			 (unsigned long long)join->table_hash, (unsigned long long)table);
-		return true;
-	}
-	return hashes_differ("layout", join->layout_hash, m->params.layout_hash, reason) ||
-	       hashes_differ("scene", join->scene_hash, m->params.scene_hash, reason) ||
-	       plans_differ(m, join, reason);
+	fdp_challenge(m->params.key, m->params.session, node, m->peers[node].joins, nonce, challenge);
 }
 
 static void refuse(struct fdp_master *m, unsigned node, const struct fdp_join *join,
@@ -134,6 +54,7 @@ static void welcome(struct fdp_master *m, unsigned node, const struct fdp_join *
 	};
 
 	memcpy(answer.nonce, join->nonce, sizeof answer.nonce);
+	memcpy(answer.master_nonce, m->nonce, sizeof answer.master_nonce);
 	make_challenge(m, node, join->nonce, answer.challenge);
 	fdp_outbox_send(&m->out, (int)node, FDP_WELCOME,
 			fdp_welcome_encode(&answer, fdp_outbox_body(&m->out), FDP_BODY_MAX));
@@ -165,6 +86,9 @@ static void admit(struct fdp_master *m, unsigned node, const struct fdp_header *
 	peer->joins++;
 	peer->plan = join->plan;
 	memcpy(peer->challenge, join->challenge, sizeof peer->challenge);
+	fdp_key_to_master(m->params.key, m->params.session, node, m->nonce, join->nonce,
+			  join->challenge, m->node_keys[node]);
+	m->gate.keyed |= UINT64_C(1) << node;
 	fdp_replay_start(&peer->window, first - 1);
 	fdp_replay_take(&peer->window, header->sequence);
 	peer->status = (struct fdp_peer_status){ .last_heard_ns = now_ns };
@@ -184,7 +108,7 @@ bool fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
 	uint8_t expected[FDP_NONCE_BYTES];
 	char reason[FDP_REASON_MAX];
 
-	if (refuses(m, header->version, join, reason)) {
+	if (fdp_master_refuses(m, header->version, join, reason)) {
 		refuse(m, node, join, reason, now_ns);
 		return false;
 	}

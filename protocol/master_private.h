@@ -1,7 +1,7 @@
 /*
  * Inside the master's half of FDP: master.c has the frame, master_receive.c
- * what arrives, master_join.c who may take part, master_repair.c what is sent
- * again, master_share.c the light that the nodes share out.
+ * what arrives, master_join.c who may take part and master_refuse.c why not,
+ * master_repair.c what is sent again, master_share.c the light that the nodes share out.
  */
 #ifndef GROTTO_PROTOCOL_MASTER_PRIVATE_H
 #define GROTTO_PROTOCOL_MASTER_PRIVATE_H
@@ -12,6 +12,7 @@
 #include "protocol/outbox.h"
 #include "protocol/peer.h"
 #include "protocol/replay.h"
+#include "protocol/session_keys.h"
 #include "protocol/share.h"
 #include "protocol/state.h"
 
@@ -53,6 +54,9 @@ struct fdp_master {
 	struct fdp_counters counters;
 	struct fdp_gate gate;
 	struct fdp_outbox out;
+	uint8_t nonce[FDP_NONCE_BYTES]; /* of the session */
+	uint8_t key_to_nodes[FDP_KEY_BYTES];
+	uint8_t node_keys[FDP_MAX_NODES][FDP_KEY_BYTES]; /* of the incarnation that came in last */
 	struct fdp_peer peers[FDP_MAX_NODES];
 	int answers; /* node whose datagram is being handled, or -1 */
 
@@ -91,6 +95,9 @@ void fdp_master_finish_if_over(struct fdp_master *m, int64_t now_ns);
 void fdp_master_write_state(struct fdp_master *m, struct fdp_letter *letter, enum fdp_kind kind,
 			    uint64_t base);
 
+/* True, with the reason, when a node may not take part. */
+bool fdp_master_refuses(const struct fdp_master *m, unsigned version, const struct fdp_join *join,
+			char reason[FDP_REASON_MAX]);
 /* True when the JOIN is no recording. */
 bool fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
 			const struct fdp_join *join, int64_t now_ns);

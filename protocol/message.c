@@ -3,8 +3,6 @@
 #include "base/cursor.h"
 #include "base/result.h"
 
-#define JOIN_USED 152
-
 static size_t written(const struct gr_writer *w)
 {
 	return w->ok ? w->len : 0;
@@ -36,7 +34,6 @@ static bool printable(const char *text, size_t len)
 
 size_t fdp_join_encode(const struct fdp_join *m, uint8_t *bytes, size_t size)
 {
-	static const uint8_t zero[FDP_JOIN_BYTES - JOIN_USED];
 	struct gr_writer w = gr_writer(bytes, size);
 
 	gr_write_u16(&w, m->version);
@@ -49,15 +46,34 @@ size_t fdp_join_encode(const struct fdp_join *m, uint8_t *bytes, size_t size)
 	gr_write_u64(&w, m->table_hash);
 	gr_write_bytes(&w, m->name, sizeof m->name);
 	gr_write_u64(&w, m->plan);
-	gr_write_bytes(&w, zero, sizeof zero);
+	gr_write_u8(&w, m->layout_items);
+	gr_write_u8(&w, m->scene_items);
+	gr_write_bytes(&w, m->items, sizeof m->items);
 	return written(&w);
+}
+
+/* What no part's digest stands in is zero. */
+static int read_items(struct gr_reader *r, struct fdp_join *out)
+{
+	unsigned count, used;
+
+	out->layout_items = gr_read_u8(r);
+	out->scene_items = gr_read_u8(r);
+	read_into(r, out->items, sizeof out->items);
+	count = (unsigned)out->layout_items + out->scene_items;
+	used = count * fdp_items_width(count);
+	if (count && !used)
+		return GR_ERR_FORMAT;
+	for (size_t i = used; i < sizeof out->items; i++)
+		if (out->items[i])
+			return GR_ERR_FORMAT;
+	return finished(r);
 }
 
 int fdp_join_decode(const uint8_t *bytes, size_t len, struct fdp_join *out)
 {
 	struct gr_reader r = gr_reader(bytes, len);
 	uint32_t reserved;
-	const uint8_t *pad;
 	uint8_t any = 0;
 	size_t name_len;
 
@@ -71,16 +87,17 @@ int fdp_join_decode(const uint8_t *bytes, size_t len, struct fdp_join *out)
 	out->table_hash = gr_read_u64(&r);
 	read_into(&r, out->name, sizeof out->name);
 	out->plan = gr_read_u64(&r);
-	pad = gr_read_bytes(&r, FDP_JOIN_BYTES - JOIN_USED);
-	for (size_t i = 0; pad && i < FDP_JOIN_BYTES - JOIN_USED; i++)
-		any |= pad[i];
 	name_len = strnlen(out->name, sizeof out->name);
 	for (size_t i = name_len; i < sizeof out->name; i++)
 		any |= (uint8_t)out->name[i];
 	if (any || reserved || !name_len || name_len == sizeof out->name ||
 	    !printable(out->name, name_len))
 		return GR_ERR_FORMAT;
-	return finished(&r);
+	if (out->version == FDP_VERSION)
+		return read_items(&r, out);
+	out->layout_items = out->scene_items = 0;
+	memset(out->items, 0, sizeof out->items);
+	return r.ok ? GR_OK : GR_ERR_FORMAT;
 }
 
 size_t fdp_welcome_encode(const struct fdp_welcome *m, uint8_t *bytes, size_t size)
@@ -89,6 +106,7 @@ size_t fdp_welcome_encode(const struct fdp_welcome *m, uint8_t *bytes, size_t si
 
 	gr_write_bytes(&w, m->nonce, sizeof m->nonce);
 	gr_write_bytes(&w, m->challenge, sizeof m->challenge);
+	gr_write_bytes(&w, m->master_nonce, sizeof m->master_nonce);
 	gr_write_u64(&w, m->first_sequence);
 	gr_write_u32(&w, m->deadline_us);
 	gr_write_u32(&w, m->probe_us);
@@ -101,6 +119,7 @@ int fdp_welcome_decode(const uint8_t *bytes, size_t len, struct fdp_welcome *out
 
 	read_into(&r, out->nonce, sizeof out->nonce);
 	read_into(&r, out->challenge, sizeof out->challenge);
+	read_into(&r, out->master_nonce, sizeof out->master_nonce);
 	out->first_sequence = gr_read_u64(&r);
 	out->deadline_us = gr_read_u32(&r);
 	out->probe_us = gr_read_u32(&r);
@@ -132,6 +151,26 @@ int fdp_refuse_decode(const uint8_t *bytes, size_t len, struct fdp_refuse *out)
 		return GR_ERR_FORMAT;
 	read_into(&r, out->reason, n);
 	return printable(out->reason, n) ? finished(&r) : GR_ERR_FORMAT;
+}
+
+size_t fdp_beacon_encode(uint8_t *bytes, size_t size)
+{
+	static const uint8_t zero[FDP_JOIN_BYTES];
+	struct gr_writer w = gr_writer(bytes, size);
+
+	gr_write_bytes(&w, zero, sizeof zero);
+	return written(&w);
+}
+
+int fdp_beacon_decode(const uint8_t *bytes, size_t len)
+{
+	uint8_t any = 0;
+
+	if (len != FDP_JOIN_BYTES)
+		return GR_ERR_FORMAT;
+	for (size_t i = 0; i < len; i++)
+		any |= bytes[i];
+	return any ? GR_ERR_FORMAT : GR_OK;
 }
 
 size_t fdp_report_encode(const struct fdp_report *m, uint8_t *bytes, size_t size)

@@ -10,8 +10,10 @@
 
 #define FDP_NONCE_BYTES 16
 #define FDP_NAME_BYTES 32 /* with the final NUL */
-/* Padded: what answers a JOIN is never longer than the JOIN. */
-#define FDP_JOIN_BYTES 256
+/* Padded: what answers a JOIN, or a BEACON, is never longer than it. */
+#define FDP_JOIN_BYTES 320
+#define FDP_JOIN_FIXED 152 /* of these the form is the same in all versions */
+#define FDP_ITEMS_BYTES (FDP_JOIN_BYTES - FDP_JOIN_FIXED - 2)
 #define FDP_BODY_MAX (FDP_DATAGRAM_MIN - FDP_HEADER_BYTES) /* of all but states and slices */
 
 struct fdp_join {
@@ -22,11 +24,25 @@ struct fdp_join {
 	uint64_t table_hash; /* of the parameter table */
 	char name[FDP_NAME_BYTES];
 	uint64_t plan; /* of how this node computes the light, where that is not the scene file's to say; 0: it is */
+	/*
+	 * The parts of layout and scene, the beginnings of their digests in this
+	 * order: fdp_items_width bytes each. All 0 in a JOIN of another version.
+	 */
+	uint8_t layout_items, scene_items;
+	uint8_t items[FDP_ITEMS_BYTES];
 };
+/* Bytes of a digest that fit; 0 when not even one does. */
+static inline unsigned fdp_items_width(unsigned count)
+{
+	const unsigned width = count ? FDP_ITEMS_BYTES / count : 0;
+
+	return width < GR_ITEM_DIGEST ? width : GR_ITEM_DIGEST;
+}
 
 struct fdp_welcome {
 	uint8_t nonce[FDP_NONCE_BYTES]; /* the JOIN's */
 	uint8_t challenge[FDP_NONCE_BYTES];
+	uint8_t master_nonce[FDP_NONCE_BYTES]; /* of the session */
 	uint64_t first_sequence; /* the node's sequence numbers start here */
 	uint32_t deadline_us, probe_us;
 };
@@ -112,6 +128,9 @@ size_t fdp_welcome_encode(const struct fdp_welcome *m, uint8_t *bytes, size_t si
 int fdp_welcome_decode(const uint8_t *bytes, size_t len, struct fdp_welcome *out);
 size_t fdp_refuse_encode(const struct fdp_refuse *m, uint8_t *bytes, size_t size);
 int fdp_refuse_decode(const uint8_t *bytes, size_t len, struct fdp_refuse *out);
+/* Says nothing: who it is from and of which session stands in the header. */
+size_t fdp_beacon_encode(uint8_t *bytes, size_t size);
+int fdp_beacon_decode(const uint8_t *bytes, size_t len);
 size_t fdp_report_encode(const struct fdp_report *m, uint8_t *bytes, size_t size);
 int fdp_report_decode(const uint8_t *bytes, size_t len, struct fdp_report *out);
 size_t fdp_nack_encode(const struct fdp_nack *m, uint8_t *bytes, size_t size);

@@ -7,7 +7,8 @@
 #include <string.h>
 
 #define NODE_KINDS (1u << FDP_WELCOME | 1u << FDP_REFUSE | 1u << FDP_SNAPSHOT | 1u << FDP_DELTA | \
-		    1u << FDP_PROBE | 1u << FDP_SWAP | 1u << FDP_LEAVE | 1u << FDP_SLICE | 1u << FDP_LACK)
+		    1u << FDP_PROBE | 1u << FDP_SWAP | 1u << FDP_LEAVE | 1u << FDP_SLICE | 1u << FDP_LACK | \
+		    1u << FDP_BEACON)
 /* A REFUSED is told again after this, even if nothing has changed. */
 #define REFUSED_AGAIN_NS INT64_C(60000000000)
 
@@ -46,6 +47,17 @@ void fdp_node_say(struct fdp_node *n, enum fdp_node_event_kind kind, uint64_t fr
 	n->ops.event(n->ops.ctx, &event);
 }
 
+static void write_items(const struct fdp_contents *c, uint8_t items[FDP_ITEMS_BYTES])
+{
+	const unsigned width = fdp_items_width((unsigned)(c->layout_count + c->scene_count));
+
+	for (size_t i = 0; i < c->layout_count; i++)
+		memcpy(items + i * width, c->layout[i].digest, width);
+	items += c->layout_count * width;
+	for (size_t i = 0; i < c->scene_count; i++)
+		memcpy(items + i * width, c->scene[i].digest, width);
+}
+
 int fdp_node_create(struct fdp_node **out, const struct fdp_node_params *params,
 		    const struct fdp_node_ops *ops)
 {
@@ -56,6 +68,7 @@ int fdp_node_create(struct fdp_node **out, const struct fdp_node_params *params,
 	if (params->index >= FDP_MAX_NODES || !params->name || !params->name[0] ||
 	    strlen(params->name) >= FDP_NAME_BYTES || params->datagram_max < FDP_DATAGRAM_MIN ||
 	    params->datagram_max > FDP_DATAGRAM_MAX || params->join_ns < 0 ||
+	    params->contents.layout_count + params->contents.scene_count > FDP_ITEMS_MAX ||
 	    params->silence_ns < 0 || !ops->send || !ops->event)
 		return GR_ERR_RANGE;
 	n = calloc(1, sizeof *n);
@@ -70,15 +83,17 @@ int fdp_node_create(struct fdp_node **out, const struct fdp_node_params *params,
 		n->params.silence_ns = FDP_SILENCE_DEFAULT_NS;
 	n->ops = *ops;
 	n->gate = (struct fdp_gate){
-		.key = n->params.key,
+		.cluster_key = n->params.key,
+		.keys = (const uint8_t(*)[FDP_KEY_BYTES])n->key_to_nodes,
 		.kinds = NODE_KINDS,
-		.any_session_kinds = 1u << FDP_WELCOME | 1u << FDP_REFUSE,
 		.any_version_kinds = 1u << FDP_REFUSE,
 		.first_sender = FDP_SENDER_MASTER,
 		.last_sender = FDP_SENDER_MASTER,
+		.self = (uint8_t)(params->index + 1),
 	};
 	n->out = (struct fdp_outbox){
-		.key = n->params.key,
+		.cluster_key = n->params.key,
+		.key = n->key_to_master,
 		.sender = params->index,
 		.datagram_max = params->datagram_max,
 		.fan_out = 1,
@@ -98,8 +113,17 @@ int fdp_node_create(struct fdp_node **out, const struct fdp_node_params *params,
 		return result;
 	}
 	randombytes_buf(n->nonce, sizeof n->nonce);
+	write_items(&n->params.contents, n->items);
 	*out = n;
 	return GR_OK;
+}
+
+/* Belongs to no session: nothing but a handshake is taken, and the keys are gone. */
+static void forget_session(struct fdp_node *n)
+{
+	n->gate.session = n->out.session = n->gate.keyed = 0;
+	sodium_memzero(n->key_to_nodes, sizeof n->key_to_nodes);
+	sodium_memzero(n->key_to_master, sizeof n->key_to_master);
 }
 
 void fdp_node_destroy(struct fdp_node **node)
@@ -114,6 +138,7 @@ void fdp_node_destroy(struct fdp_node **node)
 	param_state_destroy(&n->state);
 	param_state_destroy(&n->scratch);
 	sodium_memzero(n->params.key, sizeof n->params.key);
+	forget_session(n);
 	free(n);
 }
 
@@ -126,13 +151,16 @@ static void send_join(struct fdp_node *n, uint64_t session, int64_t now_ns)
 		.index = n->params.index,
 		.table_hash = param_table_hash(),
 		.plan = n->params.plan,
+		.layout_items = (uint8_t)n->params.contents.layout_count,
+		.scene_items = (uint8_t)n->params.contents.scene_count,
 	};
 
 	memcpy(join.nonce, session ? n->joined_nonce : n->nonce, sizeof join.nonce);
 	if (session)
 		memcpy(join.challenge, n->challenge, sizeof join.challenge);
-	memcpy(join.layout_hash, n->params.layout_hash, sizeof join.layout_hash);
-	memcpy(join.scene_hash, n->params.scene_hash, sizeof join.scene_hash);
+	memcpy(join.layout_hash, n->params.contents.layout_hash, sizeof join.layout_hash);
+	memcpy(join.scene_hash, n->params.contents.scene_hash, sizeof join.scene_hash);
+	memcpy(join.items, n->items, sizeof join.items);
 	memcpy(join.name, n->name, sizeof join.name);
 	n->asked_ns = now_ns;
 	n->asked = true;
@@ -142,9 +170,14 @@ static void send_join(struct fdp_node *n, uint64_t session, int64_t now_ns)
 	n->out.session = own;
 }
 
-static void enter_session(struct fdp_node *n, uint64_t session, int64_t now_ns)
+static void enter_session(struct fdp_node *n, uint64_t session, const struct fdp_welcome *w,
+			  int64_t now_ns)
 {
 	n->gate.session = n->out.session = session;
+	fdp_key_to_nodes(n->params.key, session, w->master_nonce, n->key_to_nodes[0]);
+	fdp_key_to_master(n->params.key, session, n->params.index, w->master_nonce, w->nonce,
+			  w->challenge, n->key_to_master);
+	n->gate.keyed = 1;
 	n->heard_ns = now_ns;
 	fdp_node_frame_reset(n);
 }
@@ -152,7 +185,7 @@ static void enter_session(struct fdp_node *n, uint64_t session, int64_t now_ns)
 void fdp_node_ask_again(struct fdp_node *n, enum fdp_node_event_kind kind, const char *reason)
 {
 	n->status = FDP_NODE_ASKING;
-	n->gate.session = n->out.session = 0;
+	forget_session(n);
 	n->asked = false; /* at once */
 	randombytes_buf(n->nonce, sizeof n->nonce);
 	say_reason(n, kind, reason);
@@ -168,7 +201,7 @@ static enum fdp_verdict on_welcome(struct fdp_node *n, const struct fdp_header *
 		return FDP_BAD_FORMAT;
 	if (sodium_memcmp(w.nonce, n->nonce, sizeof w.nonce))
 		return FDP_BAD_REPLAY;
-	/* We asked because something spoke of another session; this is our own master. */
+	/* We asked because of a beacon of another session; this is our own master. */
 	if (h->session == n->gate.session)
 		return FDP_GOOD;
 	memcpy(n->challenge, w.challenge, sizeof n->challenge);
@@ -178,7 +211,7 @@ static enum fdp_verdict on_welcome(struct fdp_node *n, const struct fdp_header *
 	n->retry_ns = (int64_t)w.probe_us * 1000;
 	n->out.sequence = w.first_sequence - 1;
 	fdp_replay_start(&n->window, h->sequence);
-	enter_session(n, h->session, now_ns);
+	enter_session(n, h->session, &w, now_ns);
 	n->status = FDP_NODE_WAITING_SNAPSHOT;
 	n->refused[0] = 0;
 	send_join(n, h->session, now_ns);
@@ -243,6 +276,24 @@ static enum fdp_verdict in_session(struct fdp_node *n, const struct fdp_header *
 	}
 }
 
+/*
+ * A key holder speaks of another session: a new master, or a recording.
+ * Asking shows which, and changes nothing here until the answer echoes our nonce.
+ */
+static enum fdp_verdict on_beacon(struct fdp_node *n, const struct fdp_header *h,
+				  const uint8_t *body, int64_t now_ns)
+{
+	if (!h->session || fdp_beacon_decode(body, h->payload_len))
+		return FDP_BAD_FORMAT;
+	/* Who is asking anyway need not be told to. */
+	if (n->status < FDP_NODE_WAITING_SNAPSHOT || h->session == n->gate.session ||
+	    (n->hinted_ns && now_ns - n->hinted_ns < n->params.join_ns))
+		return FDP_GOOD;
+	n->hinted_ns = now_ns;
+	send_join(n, 0, now_ns);
+	return FDP_GOOD;
+}
+
 int fdp_node_receive(struct fdp_node *n, const uint8_t *bytes, size_t len, int64_t now_ns)
 {
 	const uint8_t *body = bytes + FDP_HEADER_BYTES;
@@ -251,30 +302,21 @@ int fdp_node_receive(struct fdp_node *n, const uint8_t *bytes, size_t len, int64
 
 	n->counters.datagrams_in++;
 	n->counters.bytes_in += len;
-	if (verdict == FDP_BAD_SESSION) {
-		/*
-		 * A key holder speaks of another session: a new master, or a
-		 * recording. Asking shows which, and changes nothing here until
-		 * the answer echoes our nonce.
-		 */
-		if (n->status != FDP_NODE_ALONE &&
-		    (!n->hinted_ns || now_ns - n->hinted_ns >= n->params.join_ns)) {
-			n->hinted_ns = now_ns;
-			send_join(n, 0, now_ns);
-		}
-		/*
-		 * Nothing bad while we are in no session: a master that we are
-		 * asking, or one that called while our scene was being loaded.
-		 */
-		if (!n->gate.session)
-			return GR_ERR_MISMATCH;
-	} else if (verdict == FDP_GOOD) {
+	/*
+	 * Nothing bad while we are in no session: a master that we are asking,
+	 * or one that called while our scene was being loaded.
+	 */
+	if (verdict == FDP_BAD_SESSION && !n->gate.session)
+		return GR_ERR_MISMATCH;
+	if (verdict == FDP_GOOD) {
 		if (h.kind == FDP_WELCOME)
 			verdict = on_welcome(n, &h, body, now_ns);
 		else if (h.kind == FDP_REFUSE)
 			verdict = on_refuse(n, &h, body, now_ns);
+		else if (h.kind == FDP_BEACON)
+			verdict = on_beacon(n, &h, body, now_ns);
 		else
-			verdict = n->gate.session ? in_session(n, &h, body, now_ns) : FDP_BAD_SESSION;
+			verdict = in_session(n, &h, body, now_ns);
 	}
 	fdp_count_bad(&n->counters, verdict);
 	return fdp_verdict_result(verdict);
@@ -325,7 +367,7 @@ void fdp_node_leave(struct fdp_node *n, int64_t now_ns)
 	for (int i = 0; i < 2; i++)
 		fdp_outbox_send(&n->out, FDP_TO_ALL, FDP_LEAVE,
 				fdp_leave_encode(n->applied, fdp_outbox_body(&n->out), FDP_BODY_MAX));
-	n->gate.session = n->out.session = 0;
+	forget_session(n);
 	n->status = FDP_NODE_ALONE;
 	randombytes_buf(n->nonce, sizeof n->nonce);
 	fdp_node_frame_reset(n);

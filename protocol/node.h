@@ -42,7 +42,7 @@ struct fdp_node_params {
 	uint16_t index; /* of this node in the layout */
 	const char *name;
 	uint8_t key[FDP_KEY_BYTES];
-	uint8_t layout_hash[32], scene_hash[32];
+	struct fdp_contents contents;
 	uint64_t plan; /* as struct fdp_join's; nodes of one room must have one */
 	size_t datagram_max;
 	int64_t join_ns;    /* between two requests to join; 0: 200 ms */

@@ -9,6 +9,7 @@
 #include "protocol/node.h"
 #include "protocol/outbox.h"
 #include "protocol/replay.h"
+#include "protocol/session_keys.h"
 #include "protocol/share.h"
 #include "protocol/state.h"
 
@@ -33,6 +34,9 @@ struct fdp_node {
 	struct fdp_counters counters;
 	struct fdp_gate gate;
 	struct fdp_outbox out;
+	/* Of the session we are in, zero in none. */
+	uint8_t key_to_nodes[1][FDP_KEY_BYTES], key_to_master[FDP_KEY_BYTES];
+	uint8_t items[FDP_ITEMS_BYTES]; /* as JOIN says them */
 
 	enum fdp_node_state status;
 	uint8_t nonce[FDP_NONCE_BYTES];     /* of the next WELCOME that we take */
@@ -41,7 +45,7 @@ struct fdp_node {
 	struct fdp_replay window;
 	int64_t asked_ns; /* JOIN last sent */
 	bool asked;
-	int64_t hinted_ns; /* JOIN last sent because of another session's datagram */
+	int64_t hinted_ns; /* JOIN last sent because of another session's beacon */
 	int64_t heard_ns; /* master, in this session */
 	int64_t retry_ns; /* the master's probe interval */
 	char refused[FDP_REASON_MAX];

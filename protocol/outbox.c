@@ -30,12 +30,15 @@ static void send_sealed(struct fdp_outbox *out, int to, struct fdp_header *heade
 {
 	const size_t len = (size_t)FDP_HEADER_BYTES + header->payload_len;
 	const uint64_t copies = to == FDP_TO_ALL ? out->fan_out : 1;
+	const bool handshake = 1u << header->kind & FDP_HANDSHAKE;
 
 	header->version = FDP_VERSION;
 	header->sender = out->sender;
 	header->session = out->session;
 	header->sequence = ++out->sequence;
-	fdp_wire_seal(header, out->key, out->datagram);
+	if (out->sender == FDP_SENDER_MASTER && to >= 0 && !handshake)
+		header->to = (uint8_t)(to + 1);
+	fdp_wire_seal(header, handshake ? out->cluster_key : out->key, out->datagram);
 	out->counters->datagrams_out += copies;
 	out->counters->bytes_out += copies * len;
 	out->send(out->ctx, to, out->datagram, len);

@@ -20,7 +20,8 @@ struct fdp_letter {
 };
 
 struct fdp_outbox {
-	const uint8_t *key;
+	const uint8_t *cluster_key; /* signs FDP_HANDSHAKE */
+	const uint8_t *key;         /* signs all else */
 	uint16_t sender;
 	uint64_t session;
 	uint64_t sequence; /* of the last datagram */

@@ -18,7 +18,7 @@ static const char *const kind_names[FDP_KINDS] = {
 	[FDP_SNAPSHOT] = "snapshot", [FDP_DELTA] = "delta", [FDP_ACK] = "ack",
 	[FDP_NACK] = "nack",   [FDP_PROBE] = "probe",     [FDP_READY] = "ready",
 	[FDP_SWAP] = "swap",   [FDP_SWAPPED] = "swapped", [FDP_LEAVE] = "leave",
-	[FDP_SLICE] = "slice", [FDP_LACK] = "lack",
+	[FDP_SLICE] = "slice", [FDP_LACK] = "lack",       [FDP_BEACON] = "beacon",
 };
 
 const char *fdp_kind_name(enum fdp_kind kind)
@@ -87,7 +87,7 @@ void fdp_wire_seal(const struct fdp_header *header, const uint8_t key[FDP_KEY_BY
 	gr_write_u8(&w, header->version);
 	gr_write_u8(&w, (uint8_t)header->kind);
 	gr_write_u8(&w, header->packed ? FLAG_PACKED : 0);
-	gr_write_u8(&w, 0);
+	gr_write_u8(&w, header->to);
 	gr_write_u16(&w, header->sender);
 	gr_write_u16(&w, header->payload_len);
 	gr_write_u16(&w, header->index);
@@ -103,11 +103,11 @@ void fdp_wire_seal(const struct fdp_header *header, const uint8_t key[FDP_KEY_BY
 /* Everything after magic and version; false when a reserved bit is set. */
 static bool read_fields(struct gr_reader *r, struct fdp_header *out)
 {
-	uint8_t flags, reserved;
+	uint8_t flags;
 
 	out->kind = (enum fdp_kind)gr_read_u8(r);
 	flags = gr_read_u8(r);
-	reserved = gr_read_u8(r);
+	out->to = gr_read_u8(r);
 	out->packed = flags & FLAG_PACKED;
 	out->sender = gr_read_u16(r);
 	out->payload_len = gr_read_u16(r);
@@ -118,7 +118,7 @@ static bool read_fields(struct gr_reader *r, struct fdp_header *out)
 	out->message = gr_read_u64(r);
 	out->message_len = gr_read_u32(r);
 	out->plain_len = gr_read_u32(r);
-	return r->ok && !(flags & ~FLAG_PACKED) && !reserved;
+	return r->ok && !(flags & ~FLAG_PACKED);
 }
 
 static bool lengths_right(const struct fdp_header *h, size_t len)
@@ -132,11 +132,21 @@ static bool lengths_right(const struct fdp_header *h, size_t len)
 	return (1u << h->kind & LONG_KINDS) || (h->count == 1 && !h->packed);
 }
 
+/* Who may have signed it; NULL when nobody can have, as far as this side knows. */
+static const uint8_t *key_of(const struct fdp_gate *gate, const struct fdp_header *h)
+{
+	const unsigned i = (unsigned)h->sender - gate->first_sender;
+
+	if (1u << h->kind & FDP_HANDSHAKE)
+		return gate->cluster_key;
+	return h->session == gate->session && i < 64 && gate->keyed >> i & 1 ? gate->keys[i] : NULL;
+}
+
 enum fdp_verdict fdp_gate_open(const struct fdp_gate *gate, const uint8_t *bytes, size_t len,
 			       struct fdp_header *out)
 {
 	struct gr_reader r = gr_reader(bytes, len);
-	const uint8_t *got;
+	const uint8_t *got, *key;
 	uint32_t bit;
 	bool fields;
 
@@ -151,12 +161,16 @@ enum fdp_verdict fdp_gate_open(const struct fdp_gate *gate, const uint8_t *bytes
 	bit = (unsigned)out->kind < FDP_KINDS ? 1u << out->kind : 0;
 	if (out->version != FDP_VERSION && !(bit & gate->any_version_kinds))
 		return FDP_BAD_VERSION;
-	if (!fdp_wire_authentic(gate->key, bytes, len))
-		return FDP_BAD_AUTH;
 	if (out->sender < gate->first_sender || out->sender > gate->last_sender ||
 	    !(bit & gate->kinds))
 		return FDP_BAD_FORMAT;
-	if (out->session != gate->session && !(bit & gate->any_session_kinds))
+	key = key_of(gate, out);
+	if (!key)
 		return FDP_BAD_SESSION;
-	return fields && lengths_right(out, len) ? FDP_GOOD : FDP_BAD_FORMAT;
+	if (!fdp_wire_authentic(key, bytes, len))
+		return FDP_BAD_AUTH;
+	if (!fields || !lengths_right(out, len) || (out->to && bit & FDP_HANDSHAKE))
+		return FDP_BAD_FORMAT;
+	/* What was for one node is not good at another: each has numbers that only it has seen. */
+	return !out->to || out->to == gate->self ? FDP_GOOD : FDP_BAD_REPLAY;
 }

@@ -4,17 +4,19 @@
  *
  * A datagram is a header of FDP_HEADER_BYTES and a payload: a fragment of a
  * message, or a whole one. The MAC (BLAKE2b, keyed, 16 bytes: libsodium's
- * crypto_generichash, RFC 7693) covers all bytes but itself.
+ * crypto_generichash, RFC 7693) covers all bytes but itself. The cluster's key
+ * signs the kinds of FDP_HANDSHAKE, keys of the session (session_keys.h) all others.
  *
- * Header and body of JOIN and REFUSE keep their form in every version of the
- * protocol, so that a peer of another version can be told why it is refused.
+ * The header, the first FDP_JOIN_FIXED bytes of a JOIN and all of a REFUSE keep
+ * their form in every version of the protocol, so that a peer of another
+ * version can be told why it is refused.
  */
 #ifndef GROTTO_PROTOCOL_WIRE_H
 #define GROTTO_PROTOCOL_WIRE_H
 
 #include "protocol/master.h"
 
-#define FDP_VERSION 2
+#define FDP_VERSION 3
 #define FDP_HEADER_BYTES 64
 #define FDP_MAC_AT 48
 #define FDP_MAC_BYTES 16
@@ -51,13 +53,18 @@ enum fdp_kind {
 	FDP_LEAVE,
 	FDP_SLICE,    /* both: a piece of a slice of the light */
 	FDP_LACK,     /* both: these pieces of a slice are missing */
+	FDP_BEACON,   /* master: this is the session, for those who are not in it */
 	FDP_KINDS
 };
+
+/* Signed with the cluster's key: what is said before there is a session. */
+#define FDP_HANDSHAKE (1u << FDP_JOIN | 1u << FDP_WELCOME | 1u << FDP_REFUSE | 1u << FDP_BEACON)
 
 struct fdp_header {
 	uint8_t version;
 	enum fdp_kind kind;
 	bool packed;
+	uint8_t to;      /* one more than the node that it is for; 0: all, the master, or a handshake */
 	uint16_t sender; /* node index, or FDP_SENDER_MASTER */
 	uint16_t payload_len;
 	uint16_t index, count; /* fragment */
@@ -82,22 +89,24 @@ void fdp_count_bad(struct fdp_counters *counters, enum fdp_verdict verdict);
 /* As a negative result: GR_ERR_FORMAT, GR_ERR_VERSION, GR_ERR_AUTH or GR_ERR_MISMATCH. */
 int fdp_verdict_result(enum fdp_verdict verdict);
 
-/* Who may come in. Bits are 1 << kind. */
+/* Who may come in. Bits of kinds are 1 << kind. */
 struct fdp_gate {
-	const uint8_t *key;
+	const uint8_t *cluster_key;           /* of FDP_HANDSHAKE, in any session */
+	const uint8_t (*keys)[FDP_KEY_BYTES]; /* of all else, in `session`: that of first_sender + i */
+	uint64_t keyed;                       /* bit i: there is such a key */
 	uint64_t session;
-	uint32_t kinds;            /* that this side takes at all */
-	uint32_t any_session_kinds;
+	uint32_t kinds; /* that this side takes at all */
 	uint32_t any_version_kinds;
 	uint16_t first_sender, last_sender;
+	uint8_t self; /* what `to` says when it is for this side alone; 0: the master's */
 };
 
 /*
- * Checks in this order: length, magic, version, MAC (constant time), session,
- * then the rest. Fields of *out are set as far as the verdict got: on
- * FDP_BAD_SESSION and later they are authentic. The payload follows the
- * header in the caller's bytes. Replay is the caller's to check (replay.h),
- * since it is kept per sender.
+ * Checks in this order: length, magic, version, whether sender and kind may be,
+ * session, MAC (constant time), then the rest. The fields of *out are authentic
+ * on FDP_GOOD and FDP_BAD_REPLAY (for another node) alone. The payload follows
+ * the header in the caller's bytes. The window is the caller's to check
+ * (replay.h), since it is kept per sender.
  */
 enum fdp_verdict fdp_gate_open(const struct fdp_gate *gate, const uint8_t *bytes, size_t len,
 			       struct fdp_header *out);

@@ -10,6 +10,7 @@ PROTOCOL_TESTS = \
 	tests/unit/test_params \
 	tests/unit/test_peer \
 	tests/unit/test_share \
+	tests/unit/test_trust \
 	tests/unit/test_wire
 check_PROGRAMS += $(PROTOCOL_TESTS)
 TESTS += $(PROTOCOL_TESTS)
@@ -38,6 +39,10 @@ tests_unit_test_share_SOURCES = tests/unit/test_share.c \
 	tests/unit/cluster_sim.c tests/unit/cluster_sim.h tests/unit/unit.h
 tests_unit_test_share_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_share_LDADD = $(PROTOCOL_TEST_LDADD)
+tests_unit_test_trust_SOURCES = tests/unit/test_trust.c \
+	tests/unit/cluster_sim.c tests/unit/cluster_sim.h tests/unit/unit.h
+tests_unit_test_trust_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_unit_test_trust_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_wire_SOURCES = tests/unit/test_wire.c tests/unit/unit.h
 tests_unit_test_wire_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_wire_LDADD = $(PROTOCOL_TEST_LDADD)
@@ -51,6 +56,7 @@ EXTRA_DIST += \
 	tests/fuzz/corpus/datagram/ack \
 	tests/fuzz/corpus/datagram/announce \
 	tests/fuzz/corpus/datagram/announce-slices \
+	tests/fuzz/corpus/datagram/beacon \
 	tests/fuzz/corpus/datagram/join \
 	tests/fuzz/corpus/datagram/lack \
 	tests/fuzz/corpus/datagram/nack \

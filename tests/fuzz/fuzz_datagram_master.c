@@ -13,7 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
 	fuzz_pair_start(&pair, FDP_DATAGRAM_MIN);
 	sequence = pair.nodes[0]->out.sequence;
-	while ((len = fuzz_next(&r, bytes, sizeof bytes, 0, &sequence))) {
+	while ((len = fuzz_next(&pair, &r, bytes, sizeof bytes, 0, &sequence))) {
 		fuzz_queue(&pair, -1, bytes, len);
 		fuzz_deliver(&pair);
 		if (bytes[FDP_HEADER_BYTES - 1] & 1)

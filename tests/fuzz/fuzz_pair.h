@@ -177,16 +177,18 @@ static void fuzz_pair_stop(struct fuzz_pair *p)
 }
 
 /*
- * The next datagram of the input: a byte that says which fields are put right,
- * 48 bytes of header, the payload's length and the payload. Signed, since the
- * key is known here. Returns its length, 0 at the end of the input.
+ * The next datagram of the input: a byte that says which fields are put right
+ * (and whether the payload has 256 bytes more), 48 bytes of header, the
+ * payload's length and the payload. Signed as its kind
+ * wants it, since the keys are known here. Returns its length, 0 at the end of
+ * the input.
  */
-static size_t fuzz_next(struct gr_reader *r, uint8_t *bytes, size_t size, uint16_t sender,
-			uint64_t *sequence)
+static size_t fuzz_next(struct fuzz_pair *p, struct gr_reader *r, uint8_t *bytes, size_t size,
+			uint16_t sender, uint64_t *sequence)
 {
 	const uint8_t right = gr_read_u8(r);
 	const uint8_t *header = gr_read_bytes(r, FDP_MAC_AT);
-	size_t len = gr_read_u8(r);
+	size_t len = gr_read_u8(r) + (right & 16 ? 256u : 0);
 	const uint8_t *payload;
 	struct gr_writer w = gr_writer(bytes, FDP_MAC_AT);
 
@@ -197,7 +199,7 @@ static size_t fuzz_next(struct gr_reader *r, uint8_t *bytes, size_t size, uint16
 	memcpy(bytes, header, FDP_MAC_AT);
 	memcpy(bytes + FDP_HEADER_BYTES, payload, len);
 	if (right & 1) {
-		gr_write_bytes(&w, "GFDP\2", 5);
+		gr_write_bytes(&w, "GFDP\3", 5);
 		gr_write_u8(&w, header[5] % FDP_KINDS);
 		gr_write_u8(&w, header[6] & 1);
 		gr_write_u8(&w, 0);
@@ -220,7 +222,10 @@ static size_t fuzz_next(struct gr_reader *r, uint8_t *bytes, size_t size, uint16
 		gr_write_u32(&w, (uint32_t)len);
 		gr_write_u32(&w, (uint32_t)len);
 	}
-	fdp_wire_sign((const uint8_t[FDP_KEY_BYTES]){ 1 }, bytes, FDP_HEADER_BYTES + len);
+	fdp_wire_sign(1u << bytes[5] % 32 & FDP_HANDSHAKE ? p->master->params.key
+		      : sender == FDP_SENDER_MASTER	   ? p->master->key_to_nodes
+							   : p->master->node_keys[sender],
+		      bytes, FDP_HEADER_BYTES + len);
 	return FDP_HEADER_BYTES + len;
 }
 

@@ -30,9 +30,19 @@ echo "ok: garbage, wrong key, wrong version"
 sed -e 's/318.31, 318.31, 318.31/1.0, 1.0, 1.0/' "$dir/cell.scene" > "$dir/other.scene"
 start_node right --once --scene "$dir/other.scene"
 ends "$pid_right" 2 "a node of another scene"
-says right "refuses this node: another scene" || fail "the node does not say why"
-says master "node right may not join: another scene" || fail "the master does not say why"
-echo "ok: another scene is refused"
+says right "refuses this node: another scene, first at lamps" || fail "the node does not say why"
+says master "node right may not join: another scene, first at lamps" || fail "the master does not say why"
+echo "ok: another scene is refused, and says where"
+
+# Another layout likewise.
+sed -e 's/evict_frames = 3/evict_frames = 4/' "$dir/room.cave" > "$dir/other.cave"
+start_node floor --once --layout "$dir/other.cave"
+ends "$pid_floor" 2 "a node of another layout"
+says floor "refuses this node: another layout, first at rates.evict_frames" ||
+	fail "the node does not say where the layouts differ"
+says master "node floor may not join: another layout, first at rates.evict_frames" ||
+	fail "the master does not say where the layouts differ"
+echo "ok: another layout is refused, and says where"
 
 # Live settings, right and wrong.
 ask set gi_steps 6 | grep -q '"ok":true' || fail "set gi_steps 6"

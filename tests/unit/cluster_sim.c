@@ -2,6 +2,20 @@
 
 #include "base/result.h"
 
+static const struct gr_item layout_items[] = {
+	{ "number of walls", { 4 } },
+	{ "walls[0] (front)", { 1, 2, 3, 4, 5, 6, 7, 8 } },
+	{ "rates.frame_hz", { 60 } },
+};
+static const struct gr_item scene_items[] = {
+	{ "lamps", { 9, 9 } },
+	{ "model", { 8, 8 } },
+};
+static const struct fdp_contents sim_contents = {
+	.layout_hash = { 4 }, .scene_hash = { 5 },
+	.layout = layout_items, .layout_count = 3, .scene = scene_items, .scene_count = 2,
+};
+
 static double uniform(struct sim *s)
 {
 	return unit_random_range(&s->random, 0, 1);
@@ -205,8 +219,7 @@ void sim_start_master(struct sim *s)
 	struct fdp_master_params p = {
 		.session = ++s->session,
 		.key = { 1, 2, 3 },
-		.layout_hash = { 4 },
-		.scene_hash = { 5 },
+		.contents = sim_contents,
 		.node_names = names,
 		.node_count = s->node_count,
 		.datagram_max = s->datagram_max,
@@ -239,8 +252,7 @@ void sim_start_node(struct sim *s, int node)
 		.index = (uint16_t)node,
 		.name = s->names[node],
 		.key = { 1, 2, 3 },
-		.layout_hash = { 4 },
-		.scene_hash = { 5 },
+		.contents = sim_contents,
 		.datagram_max = s->datagram_max,
 		.share_bytes = s->share_bytes,
 	};

@@ -428,7 +428,8 @@ static bool spoil_delta(struct sim *s, int to, uint8_t *bytes, size_t len)
 {
 	struct tamper *t = s->tamper_ctx;
 	const struct fdp_gate gate = {
-		.key = (const uint8_t[FDP_KEY_BYTES]){ 1, 2, 3 },
+		.keys = (const uint8_t(*)[FDP_KEY_BYTES])&s->master->key_to_nodes,
+		.keyed = 1,
 		.session = s->session,
 		.kinds = 1u << FDP_DELTA,
 		.first_sender = FDP_SENDER_MASTER,
@@ -443,7 +444,7 @@ static bool spoil_delta(struct sim *s, int to, uint8_t *bytes, size_t len)
 	last[-1] ^= 0x10; /* of the last parameter's last element */
 	if (t->also_hash)
 		bytes[FDP_HEADER_BYTES + 16] ^= 1;
-	fdp_wire_seal(&h, gate.key, bytes);
+	fdp_wire_seal(&h, s->master->key_to_nodes, bytes);
 	return true;
 }
 
@@ -487,7 +488,8 @@ static bool spoil_ready(struct sim *s, int to, uint8_t *bytes, size_t len)
 {
 	struct tamper *t = s->tamper_ctx;
 	const struct fdp_gate gate = {
-		.key = (const uint8_t[FDP_KEY_BYTES]){ 1, 2, 3 },
+		.keys = (const uint8_t(*)[FDP_KEY_BYTES])s->master->node_keys + t->target,
+		.keyed = 1,
 		.session = s->session,
 		.kinds = 1u << FDP_READY,
 		.first_sender = (uint16_t)t->target,
@@ -499,7 +501,7 @@ static bool spoil_ready(struct sim *s, int to, uint8_t *bytes, size_t len)
 		return true;
 	t->done++;
 	bytes[FDP_HEADER_BYTES + 8] ^= 1;
-	fdp_wire_seal(&h, gate.key, bytes);
+	fdp_wire_seal(&h, s->master->node_keys[t->target], bytes);
 	return true;
 }
 
@@ -553,13 +555,12 @@ static void play(struct sim *s, const struct recording *r)
 }
 
 /* A recording of an older session, or of this one, moves nothing. */
-static void replays(void **state)
+static void replay_into(bool same_number)
 {
 	struct fdp_counters before, after;
 	struct recording r = { 0 };
 	struct sim s;
 
-	(void)state;
 	sim_init(&s, 3, 21);
 	s.tamper = record;
 	s.tamper_ctx = &r;
@@ -575,8 +576,9 @@ static void replays(void **state)
 	assert_int_equal(s.joined, 3);
 	fdp_master_counters(s.master, &after);
 	assert_true(after.bad_replay > before.bad_replay + r.count / 4);
-	/* Into the next one. */
+	/* Into the next one, even where its number is the same. */
 	sim_kill_master(&s);
+	s.session -= same_number;
 	sim_start_master(&s);
 	sim_assemble(&s);
 	for (int i = 0; i < 3; i++)
@@ -588,11 +590,20 @@ static void replays(void **state)
 	assert_int_equal(s.joined, 6);
 	assert_int_equal(s.left + s.evicted + s.late, 0);
 	fdp_master_counters(s.master, &after);
-	assert_true(after.bad_session > before.bad_session + r.count / 4);
+	/* Its keys are others. */
+	assert_true(same_number ? after.bad_auth > before.bad_auth + r.count / 4
+				: after.bad_session > before.bad_session + r.count / 4);
 	for (size_t i = 0; i < r.count; i++)
 		free(r.items[i].bytes);
 	free(r.items);
 	sim_finish(&s);
+}
+
+static void replays(void **state)
+{
+	(void)state;
+	replay_into(false);
+	replay_into(true);
 }
 
 /* How many of the recorded datagrams to the master are taken for the node's own of now. */
@@ -675,12 +686,13 @@ static void bit_flips(void **state)
 	sim_run_frames(&s, 100);
 	assert_all_swapped(&s, 100);
 	fdp_master_counters(s.master, &c);
-	printf("# master dropped %llu of %llu: %llu by MAC, %llu by version, %llu by form\n",
-	       (unsigned long long)(c.bad_auth + c.bad_version + c.bad_format),
+	printf("# master dropped %llu of %llu: %llu by MAC, %llu by version, %llu by form, %llu by session\n",
+	       (unsigned long long)(c.bad_auth + c.bad_version + c.bad_format + c.bad_session),
 	       (unsigned long long)c.datagrams_in, (unsigned long long)c.bad_auth,
-	       (unsigned long long)c.bad_version, (unsigned long long)c.bad_format);
-	assert_int_equal((c.bad_auth + c.bad_version + c.bad_format) * 2, c.datagrams_in);
-	assert_int_equal(c.bad_replay + c.bad_session + c.bad_short, 0);
+	       (unsigned long long)c.bad_version, (unsigned long long)c.bad_format,
+	       (unsigned long long)c.bad_session);
+	assert_int_equal((c.bad_auth + c.bad_version + c.bad_format + c.bad_session) * 2, c.datagrams_in);
+	assert_int_equal(c.bad_replay + c.bad_short, 0);
 	sim_finish(&s);
 }
 
@@ -702,19 +714,50 @@ static void refuse_one(void (*spoil)(struct sim *s), const char *ours, const cha
 	assert_int_equal(s.joined, 1);
 	fdp_node_counters(s.nodes[1].node, &c);
 	assert_true(c.datagrams_out >= 5); /* still asking */
-	assert_true(c.bytes_in <= c.bytes_out); /* never answered with more than it sent */
 	sim_finish(&s);
 }
 
-static void spoil_layout(struct sim *s) { s->nodes[1].node->params.layout_hash[0] = 0xab; }
-static void spoil_scene(struct sim *s) { s->nodes[1].node->params.scene_hash[7] = 0xcd; }
+static void spoil_layout(struct sim *s)
+{
+	s->nodes[1].node->params.contents.layout_hash[0] = 0xab;
+	s->nodes[1].node->items[9] ^= 1;
+}
+
+static void spoil_scene(struct sim *s)
+{
+	s->nodes[1].node->params.contents.scene_hash[7] = 0xcd;
+	s->nodes[1].node->items[4 * 8 + 7] ^= 1;
+}
+
+/* A layout of fewer parts, which are as ours. */
+static void cut_layout(struct sim *s)
+{
+	s->nodes[1].node->params.contents.layout_hash[0] = 0xab;
+	s->nodes[1].node->params.contents.layout_count = 2;
+	memmove(s->nodes[1].node->items + 16, s->nodes[1].node->items + 24, 16);
+	memset(s->nodes[1].node->items + 32, 0, 8);
+}
+
+/* Only the hashes are said. */
+static void hide_parts(struct sim *s)
+{
+	s->nodes[1].node->params.contents.layout_hash[0] = 0xab;
+	s->nodes[1].node->params.contents.layout_count = s->nodes[1].node->params.contents.scene_count = 0;
+	memset(s->nodes[1].node->items, 0, sizeof s->nodes[1].node->items);
+}
+
 static void spoil_name(struct sim *s) { strcpy(s->nodes[1].node->name, "floor"); }
 
 static void refusals(void **state)
 {
 	(void)state;
-	refuse_one(spoil_layout, "0400000000000000", "ab00000000000000");
-	refuse_one(spoil_scene, "0500000000000000", "05000000000000cd");
+	refuse_one(spoil_layout, "the master's 0400000000000000", "hash is ab00000000000000");
+	refuse_one(spoil_layout, "another layout, first at walls[0] (front): ",
+		   "; give the node the master's file");
+	refuse_one(spoil_scene, "the master's 0500000000000000", "hash is 05000000000000cd");
+	refuse_one(spoil_scene, "another scene, first at model: ", "");
+	refuse_one(cut_layout, "another layout, first at rates.frame_hz: ", "");
+	refuse_one(hide_parts, "another layout: the node's hash is", "");
 	refuse_one(spoil_name, "wall1", "floor");
 }
 
@@ -750,9 +793,9 @@ static void other_version(void **state)
 {
 	const uint8_t key[FDP_KEY_BYTES] = { 1, 2, 3 };
 	uint8_t bytes[FDP_HEADER_BYTES + FDP_JOIN_BYTES];
-	struct fdp_join join = { .version = 3, .index = 0, .name = "wall0" };
+	struct fdp_join join = { .version = 9, .index = 0, .name = "wall0", .items = { 1, 2, 3 } };
 	struct fdp_header h = {
-		.version = 3, .kind = FDP_JOIN, .sender = 0, .payload_len = FDP_JOIN_BYTES,
+		.version = 9, .kind = FDP_JOIN, .sender = 0, .payload_len = FDP_JOIN_BYTES,
 		.count = 1, .sequence = 1, .message = 1,
 		.message_len = FDP_JOIN_BYTES, .plain_len = FDP_JOIN_BYTES,
 	};
@@ -765,7 +808,7 @@ static void other_version(void **state)
 	fdp_wire_seal(&h, key, bytes);
 	assert_int_equal(fdp_master_receive(s.master, bytes, sizeof bytes, s.now_ns, NULL), 0);
 	assert_int_equal(s.refused, 1);
-	assert_non_null(strstr(s.reason, "speaks 3, the master 2"));
+	assert_non_null(strstr(s.reason, "speaks 9, the master 3"));
 	/* Anything else of that version is not looked at. */
 	h.kind = FDP_ACK;
 	fdp_wire_seal(&h, key, bytes);

@@ -107,7 +107,7 @@ static void when_it_pays(void **state)
 	struct unit_random r = unit_random_start("when_it_pays");
 	struct fdp_counters counters = { 0 };
 	struct fdp_outbox out = {
-		.key = key, .session = 1, .datagram_max = 1472, .fan_out = 1,
+		.cluster_key = key, .key = key, .session = 1, .datagram_max = 1472, .fan_out = 1,
 		.counters = &counters, .send = count_send,
 	};
 

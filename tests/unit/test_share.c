@@ -360,7 +360,6 @@ static void the_last_is_not_lost(void **state)
 static uint16_t say_slice(struct room *room, struct fdp_piece piece, size_t len, int node)
 {
 	static uint8_t bytes[4096];
-	const uint8_t key[FDP_KEY_BYTES] = { 1, 2, 3 };
 	struct fdp_node *n = room->sim.nodes[node].node;
 	struct fdp_header h = {
 		.version = FDP_VERSION, .kind = FDP_SLICE, .sender = (uint16_t)node,
@@ -376,7 +375,7 @@ static uint16_t say_slice(struct room *room, struct fdp_piece piece, size_t len,
 
 	memset(bytes, 0x5a, sizeof bytes);
 	fdp_piece_encode(&piece, bytes + FDP_HEADER_BYTES, FDP_PIECE_HEAD);
-	fdp_wire_seal(&h, key, bytes);
+	fdp_wire_seal(&h, n->key_to_master, bytes);
 	fdp_master_counters(room->sim.master, &before);
 	fdp_master_share(room->sim.master, &shared_before);
 	exact = unit_copy(bytes, FDP_HEADER_BYTES + h.payload_len);
