@@ -5,6 +5,7 @@ base_libgbase_a_SOURCES = \
 	base/diag.c base/diag.h \
 	base/item.h \
 	base/log.c base/log.h \
+	base/plain.c base/plain.h \
 	base/pose.c base/pose.h \
 	base/result.c base/result.h
 base_libgbase_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS)

@@ -40,6 +40,8 @@ static void write_node(struct json *json, const struct master *m, size_t i, int6
 	json_u64(json, "slices", peer.slices);
 	json_u64(json, "slices_late", peer.slices_late);
 	json_u64(json, "slice_bytes", peer.slice_bytes);
+	json_string(json, "light", peer.light);
+	json_hash(json, "light_plan", peer.plan);
 	if (peer.last_heard_ns > 0)
 		json_f64(json, "heard_ms_ago", (double)(now_ns - peer.last_heard_ns) * 1e-6);
 	json_close(json, '}');

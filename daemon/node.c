@@ -317,6 +317,7 @@ static int create_protocol(struct node *n)
 		.datagram_max = net_datagram_max(&layout->network),
 		.silence_ns = SILENCE_NS,
 		.plan = n->params.plan,
+		.light = n->params.light,
 		.share_bytes = n->share.room,
 	};
 	struct fdp_node_ops ops = { send_datagram, on_event, n };

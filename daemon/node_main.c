@@ -170,6 +170,8 @@ static void take_priority(const struct opened *o, int priority)
 	priority_take(priority);
 }
 
+_Static_assert(GI_PLAN_TEXT == FDP_LIGHT_BYTES, "a plan in words must fit into a JOIN");
+
 static int open_all(struct opened *o, const struct node_options *options)
 {
 	struct renderer_params renderer;
@@ -206,6 +208,7 @@ static int open_all(struct opened *o, const struct node_options *options)
 		return r;
 	params.contents = room_files_contents(&o->files);
 	memcpy(params.key, o->files.key, sizeof params.key);
+	params.light = renderer_light_text(o->renderer);
 	if (renderer_plan(o->renderer))
 		params.plan = renderer_plan(o->renderer)->hash;
 	return node_create(&o->node, o->loop, o->net, o->target, o->renderer, o->pictures, &params);

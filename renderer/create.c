@@ -1,5 +1,6 @@
 #include "renderer/renderer_private.h"
 
+#include "base/plain.h"
 #include "base/result.h"
 #include "renderer/calibrate.h"
 #include "renderer/gi/choose.h"
@@ -7,6 +8,8 @@
 #include "renderer/gi/surfels.h"
 #include "renderer/scene/environment.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 static int check_params(const struct renderer_params *params, const struct target *target)
@@ -32,22 +35,42 @@ static void plan_light(struct renderer *r)
 {
 	const struct scene_file *file = r->file;
 	const char *from = "no costs needed";
-	struct gi_costs costs = gi_costs_usual;
-	struct gi_facts facts;
 
 	r->file_steps = file->gi.steps;
+	gi_facts_take(&r->facts, r->scene, file);
 	if (file->gi.method != SCENE_GI_AUTO)
 		return;
-	gi_facts_take(&facts, r->scene, file);
-	if (gi_plan_needs_costs(&facts))
-		calibrate_kept(&costs, r->target, &from);
-	gi_plan_make(&r->plan, &facts, &file->gi, &costs);
+	r->costs = gi_costs_usual;
+	if (gi_plan_needs_costs(&r->facts)) {
+		calibrate_kept(&r->costs, r->target, &from);
+		if (r->facts.scattering_per_m <= 0 && gi_facts_count(&r->facts, r->scene) != GR_OK)
+			gr_notice("surfels could not be counted before they are baked: planned by the scene's area alone");
+	}
+	gi_plan_make(&r->plan, &r->facts, &file->gi, &r->costs);
 	r->planned = *file;
 	r->planned.gi = r->plan.gi;
 	r->file = &r->planned;
 	r->is_planned = true;
-	gr_log(r->plan.within ? GR_LOG_NOTICE : GR_LOG_WARNING, "light, chosen for %.3g ms by %s: %s",
-	       (double)file->gi.budget_ms, from, r->plan.why);
+	gr_log(r->plan.within ? GR_LOG_NOTICE : GR_LOG_WARNING, "light, chosen for %s ms by %s: %s",
+	       gr_plain((double)file->gi.budget_ms, 3).text, from, r->plan.why);
+}
+
+/* A plan by what was baked, and what would be right where it exceeds the budget. */
+static void settle_plan(struct renderer *r)
+{
+	struct gi_plan right;
+	char settings[160];
+
+	if (gi_plan_baked(&r->plan, &r->facts, &r->costs, r->surfels, &right)) {
+		gr_info("light, with the surfels that there are: %s", r->plan.text);
+		return;
+	}
+	gi_plan_settings(settings, sizeof settings, &right.gi);
+	gr_warning("light: %zu surfels take %s ms, more than the budget of %s ms; gi.budget_ms = %s "
+		   "would be right, or %s, named in the scene file",
+		   r->surfels, gr_plain(r->plan.update_ms, 3).text,
+		   gr_plain((double)r->plan.gi.budget_ms, 3).text,
+		   gr_plain(ceil(r->plan.update_ms), 3).text, settings);
 }
 
 /* What surfels and probes need of the scene, once, and then on the GPU. */
@@ -64,8 +87,12 @@ static int create_surfels(struct renderer *r, bool probes)
 
 	surfel_bake_params_of(r->file, &bake);
 	result = surfels_load_or_bake(&set, r->scene, r->file, &bake);
-	if (result == GR_OK)
+	if (result == GR_OK) {
+		r->surfels = set->count;
 		result = gi_surfels_create(&r->gi, set, &params);
+	}
+	if (result == GR_OK && r->is_planned)
+		settle_plan(r);
 	surfel_set_destroy(&set);
 	return result;
 }
@@ -93,6 +120,10 @@ static int create_light(struct renderer *r, const struct emissive_patches *patch
 	if (result == GR_OK &&
 	    (r->choice.method == SCENE_GI_SURFELS || r->choice.method == SCENE_GI_PROBES))
 		result = create_surfels(r, r->choice.method == SCENE_GI_PROBES);
+	if (r->is_planned)
+		snprintf(r->light_text, sizeof r->light_text, "%s", r->plan.text);
+	else
+		gi_plan_text(r->light_text, &r->file->gi, r->surfels);
 	return result;
 }
 
@@ -144,6 +175,20 @@ static void log_environment(const struct renderer *r)
 			   method == SCENE_GI_NONE ? "none" : "lpv");
 }
 
+/* Baked light knows no air. */
+static void log_medium(const struct renderer *r)
+{
+	if (r->choice.method != SCENE_GI_SURFELS && r->choice.method != SCENE_GI_PROBES)
+		return;
+	if (r->facts.scattering_per_m > 0)
+		gr_warning("the air scatters, which surfels and probes do not carry; gi.method = \"lpv\" does");
+	if (gi_plan_unthinned(&r->facts) > 0)
+		gr_warning("the air absorbs, but what emissive surfaces and the environment throw on "
+			   "surfaces was fixed at baking and is not thinned: their indirect light is up to "
+			   "%s too bright",
+			   gr_plain_percent(gi_plan_unthinned(&r->facts)).text);
+}
+
 static void log_stages(const struct renderer *r, const struct emissive_patches *patches)
 {
 	if (r->shadow)
@@ -155,10 +200,11 @@ static void log_stages(const struct renderer *r, const struct emissive_patches *
 		gr_info("stage shadow: none, the scene has no lamps");
 	if (r->emissive)
 		gr_info("stage emissive: %zu emissive triangles as %d patches in %d groups, "
-			"hemicubes of %d x %d drawn once, flux %.4g %.4g %.4g W",
+			"hemicubes of %d x %d drawn once, flux %s %s %s W",
 			patches->triangles, patches->count, patches->group_count,
 			emissive_pixels(r->emissive), emissive_pixels(r->emissive),
-			patches->flux[0], patches->flux[1], patches->flux[2]);
+			gr_plain(patches->flux[0], 4).text, gr_plain(patches->flux[1], 4).text,
+			gr_plain(patches->flux[2], 4).text);
 	else
 		gr_info("stage emissive: none, no surface of the scene emits");
 	if (r->gi)
@@ -167,6 +213,7 @@ static void log_stages(const struct renderer *r, const struct emissive_patches *
 	else
 		gr_info("stage gi: none, %s", r->choice.why);
 	log_environment(r);
+	log_medium(r);
 	gr_info("stages gbuffer and shade: %d picture%s of %d x %d, drawn when the eye or the "
 		"light changes",
 		r->eye_count, r->eye_count > 1 ? "s" : "", r->params.width, r->params.height);

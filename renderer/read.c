@@ -76,6 +76,16 @@ const struct gi_plan *renderer_plan(const struct renderer *renderer)
 	return renderer->is_planned ? &renderer->plan : NULL;
 }
 
+const char *renderer_light_text(const struct renderer *renderer)
+{
+	return renderer->light_text;
+}
+
+size_t renderer_surfels(const struct renderer *renderer)
+{
+	return renderer->surfels;
+}
+
 bool renderer_gi_stats(const struct renderer *renderer, struct gi_stats *out)
 {
 	if (!renderer->gi)

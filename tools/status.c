@@ -45,6 +45,41 @@ static void print_nodes(struct json_object *status)
 	}
 }
 
+/* "" where it is not said. */
+static const char *light_of(struct json_object *nodes, size_t i)
+{
+	struct json_object *light = report_member(json_object_array_get_idx(nodes, i), "light");
+
+	return json_object_is_type(light, json_type_string) ? json_object_get_string(light) : "";
+}
+
+/* How light is computed: one line when all nodes say the same, else one for each. */
+static void print_light(struct json_object *status)
+{
+	struct json_object *nodes = report_member(status, "nodes");
+	size_t count = json_object_is_type(nodes, json_type_array)
+			       ? json_object_array_length(nodes) : 0;
+	const char *first = NULL;
+	bool alike = true;
+
+	for (size_t i = 0; i < count; i++) {
+		const char *light = light_of(nodes, i);
+
+		if (!light[0])
+			continue;
+		alike = alike && (!first || !strcmp(first, light));
+		first = first ? first : light;
+	}
+	if (first && alike)
+		printf("light: %s\n", first);
+	for (size_t i = 0; i < count && !alike; i++) {
+		if (light_of(nodes, i)[0])
+			printf("light of %s: %s\n",
+			       report_text(json_object_array_get_idx(nodes, i), "name"),
+			       light_of(nodes, i));
+	}
+}
+
 /* Of a room whose nodes share out the light. */
 static void print_share(struct json_object *status)
 {
@@ -96,6 +131,7 @@ static void print_status(struct json_object *status)
 	       (long long)report_count(status, "wire.bytes_out"),
 	       (long long)report_count(status, "wire.repairs"),
 	       (long long)report_count(status, "wire.bytes_in"));
+	print_light(status);
 	print_share(status);
 	print_bad(status);
 }

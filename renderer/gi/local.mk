@@ -9,11 +9,12 @@ RENDERER_SOURCES += \
 	renderer/gi/lpv_cpu.c renderer/gi/lpv_cpu.h renderer/gi/lpv_thesis.c \
 	renderer/gi/choose.c renderer/gi/choose.h \
 	renderer/gi/costs_file.c renderer/gi/costs_file.h \
-	renderer/gi/plan.c renderer/gi/plan.h renderer/gi/plan_error.c renderer/gi/plan_facts.c \
+	renderer/gi/plan.c renderer/gi/plan.h renderer/gi/plan_private.h \
+	renderer/gi/plan_error.c renderer/gi/plan_facts.c renderer/gi/plan_say.c \
 	renderer/gi/sectors.c renderer/gi/sectors.h \
 	renderer/gi/surface.c renderer/gi/surface.h \
 	renderer/gi/surfel_bake.c renderer/gi/surfel_bake.h renderer/gi/surfel_bake_private.h \
-	renderer/gi/surfel_cells.c renderer/gi/surfel_fixed.c renderer/gi/surfel_links.c renderer/gi/surfel_material.c \
+	renderer/gi/surfel_cells.c renderer/gi/surfel_count.c renderer/gi/surfel_count.h renderer/gi/surfel_fixed.c renderer/gi/surfel_links.c renderer/gi/surfel_material.c \
 	renderer/gi/surfel_patch_data.c renderer/gi/surfel_patches.c renderer/gi/surfel_points.c renderer/gi/surfel_probes.c \
 	renderer/gi/surfel_file.c renderer/gi/surfel_file.h renderer/gi/surfel_file_check.c renderer/gi/surfel_file_private.h \
 	renderer/gi/surfel_store.c renderer/gi/surfel_store.h \

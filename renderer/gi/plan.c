@@ -1,12 +1,12 @@
 #include "renderer/gi/plan.h"
 
+#include "renderer/gi/plan_private.h"
+#include "renderer/gi/surfel_bake.h"
+
 #include <math.h>
 #include <sodium.h>
-#include <stdio.h>
 #include <string.h>
 
-/* Surfels on a surface: of surfel_bake.c, Poisson discs that leave no gap. */
-#define SURFEL_DENSITY 0.7
 /* Rays that baking may take: about half a minute on two cores. */
 #define RAYS_MOST 2.4e7
 #define SURFELS_MOST 100000.0
@@ -21,7 +21,7 @@ const struct gi_costs gi_costs_usual = {
 	.surfel_link = 10,
 };
 
-static const double surfel_counts[] = { 500, 1000, 2000, 4000, 8000, 16000, 32000, 64000 };
+static const double surfel_counts[] = { 250, 500, 1000, 2000, 4000, 8000, 16000, 32000, 64000 };
 static const int link_counts[] = { 64, 128, 256, 512, 1024 };
 static const int gather_counts[] = { 1, 2, 4 };
 static const int tap_counts[] = { 16, 32, 64 };
@@ -55,17 +55,32 @@ static double grid_cells(const struct gi_facts *facts, int longest)
 	return cells;
 }
 
-double gi_plan_surfels(const struct gi_facts *facts, const struct scene_gi *gi)
+/* Over an area, and along edges: that which a spacing must be for so many. */
+static double exact_spacing(const struct gi_facts *facts, double count)
+{
+	double edge = facts->edge_surfels_m;
+
+	return (edge + sqrt(edge * edge + 4 * count * SURFEL_DENSITY * facts->area_m2)) / (2 * count);
+}
+
+double gi_plan_spacing(const struct gi_facts *facts, const struct scene_gi *gi)
 {
 	double spacing = (double)gi->spacing_m;
 
-	return spacing > 0 ? SURFEL_DENSITY * facts->area_m2 / (spacing * spacing) : 5000;
+	return spacing > 0 ? spacing : sqrt(SURFEL_DENSITY * facts->area_m2 / SURFEL_USUAL);
 }
 
-double gi_plan_cost_ms(const struct gi_facts *facts, const struct scene_gi *gi,
-		       const struct gi_costs *c)
+double gi_plan_surfels(const struct gi_facts *facts, const struct scene_gi *gi)
 {
-	double lamps = facts->lamps_fixed + facts->lamps_moving, surfels, ns = 0;
+	double spacing = gi_plan_spacing(facts, gi);
+
+	return SURFEL_DENSITY * facts->area_m2 / (spacing * spacing) + facts->edge_surfels_m / spacing;
+}
+
+static double cost_of(const struct gi_facts *facts, const struct scene_gi *gi,
+		      const struct gi_costs *c, double surfels)
+{
+	double lamps = facts->lamps_fixed + facts->lamps_moving, ns = 0;
 
 	switch (gi->method) {
 	case SCENE_GI_LPV:
@@ -73,7 +88,6 @@ double gi_plan_cost_ms(const struct gi_facts *facts, const struct scene_gi *gi,
 		break;
 	case SCENE_GI_SURFELS:
 	case SCENE_GI_PROBES:
-		surfels = gi_plan_surfels(facts, gi);
 		ns = c->surfel_frame + surfels * gi->taps * lamps * c->surfel_tap +
 		     surfels * gi->links * gi->gathers * c->surfel_link;
 		if (gi->method == SCENE_GI_PROBES)
@@ -84,6 +98,12 @@ double gi_plan_cost_ms(const struct gi_facts *facts, const struct scene_gi *gi,
 		break;
 	}
 	return ns * 1e-6;
+}
+
+double gi_plan_cost_ms(const struct gi_facts *facts, const struct scene_gi *gi,
+		       const struct gi_costs *costs)
+{
+	return cost_of(facts, gi, costs, gi_plan_surfels(facts, gi));
 }
 
 uint64_t gi_plan_hash(const struct scene_gi *gi)
@@ -174,7 +194,7 @@ static void consider_lattices(struct search *s, struct scene_gi gi)
 /* Two digits: what a person would write; at most what a scene file may say. */
 static float spacing_for(const struct gi_facts *facts, double count)
 {
-	double spacing = fmin(sqrt(SURFEL_DENSITY * facts->area_m2 / count), SPACING_MOST);
+	double spacing = fmin(exact_spacing(facts, count), SPACING_MOST);
 	double power = pow(10, floor(log10(spacing)) - 1);
 
 	return (float)(round(spacing / power) * power);
@@ -212,7 +232,7 @@ static void consider_surfels(struct search *s, struct scene_gi gi, bool probes)
 	}
 }
 
-static bool has_light(const struct gi_facts *facts)
+bool gi_plan_has_light(const struct gi_facts *facts)
 {
 	return facts->lamps_fixed + facts->lamps_moving > 0 || facts->emissive_triangles > 0 ||
 	       facts->environment;
@@ -220,60 +240,19 @@ static bool has_light(const struct gi_facts *facts)
 
 bool gi_plan_needs_costs(const struct gi_facts *facts)
 {
-	return has_light(facts) && isfinite(facts->area_m2) && facts->area_m2 > 0;
+	return gi_plan_has_light(facts) && isfinite(facts->area_m2) && facts->area_m2 > 0;
 }
 
-static void say_settings(char *text, size_t size, const struct scene_gi *gi)
+/* All that follows from the settings. */
+static void complete(struct gi_plan *plan, const struct gi_facts *facts)
 {
-	switch (gi->method) {
-	case SCENE_GI_LPV:
-		snprintf(text, size, "a lattice of %d cells, %d steps", gi->lattice, gi->steps);
-		break;
-	case SCENE_GI_SURFELS:
-		snprintf(text, size, "surfels %.3g m apart, %d links, %d gather%s, %d taps",
-			 (double)gi->spacing_m, gi->links, gi->gathers, gi->gathers == 1 ? "" : "s", gi->taps);
-		break;
-	case SCENE_GI_PROBES:
-		snprintf(text, size, "%d probes along the longest side, surfels %.3g m apart, %d links, %d gather%s, %d taps",
-			 gi->probes, (double)gi->spacing_m, gi->links, gi->gathers,
-			 gi->gathers == 1 ? "" : "s", gi->taps);
-		break;
-	case SCENE_GI_NONE:
-	case SCENE_GI_AUTO:
-		snprintf(text, size, "none");
-		break;
-	}
-}
+	double under, over;
 
-static const char *reason(const struct gi_facts *facts, const struct gi_plan *plan)
-{
-	if (plan->gi.method == SCENE_GI_NONE)
-		return has_light(facts) ? "no surface can be lit"
-					: "no lamp, no emissive surface, no environment";
-	if (facts->scattering_per_m > 0)
-		return facts->environment ? "the air scatters, which only the lattice carries; it leaves the environment out"
-					  : "the air scatters, which only the lattice carries";
-	if (facts->moving_geometry)
-		return "things move, and only probes light what is not baked";
-	return facts->environment ? "static surfaces and an environment, which the lattice does not know"
-				  : "static surfaces";
-}
-
-static void say(struct gi_plan *plan, const struct gi_facts *facts, double budget_ms)
-{
-	char settings[160];
-
-	say_settings(settings, sizeof settings, &plan->gi);
-	if (plan->gi.method == SCENE_GI_NONE) {
-		snprintf(plan->why, sizeof plan->why, "none: %s", reason(facts, plan));
-		return;
-	}
-	snprintf(plan->why, sizeof plan->why,
-		 "%s: %s; expected %.3g ms a frame while the light changes%s, %.2g %% error (nRMSE)%s", settings,
-		 reason(facts, plan), plan->update_ms, facts->lamps_moving ? "" : " (no lamp moves by itself)",
-		 100 * plan->error, plan->within ? "" : "; the budget is less than the least costs");
-	if (!plan->within && strlen(plan->why) + 32 < sizeof plan->why)
-		snprintf(plan->why + strlen(plan->why), 32, " (%.3g ms)", budget_ms);
+	gi_plan_spread(plan->gi.method, &under, &over);
+	plan->error_least = plan->error / under;
+	plan->error_most = plan->error * over;
+	plan->hash = gi_plan_hash(&plan->gi);
+	gi_plan_say(plan, facts);
 }
 
 void gi_plan_make(struct gi_plan *out, const struct gi_facts *facts, const struct scene_gi *wanted,
@@ -300,8 +279,27 @@ void gi_plan_make(struct gi_plan *out, const struct gi_facts *facts, const struc
 	if (!s.any) {
 		out->gi.method = SCENE_GI_NONE;
 		out->within = true;
-		out->error = has_light(facts);
+		out->error = gi_plan_has_light(facts);
 	}
-	out->hash = gi_plan_hash(&out->gi);
-	say(out, facts, s.budget_ms);
+	if (out->gi.method == SCENE_GI_SURFELS || out->gi.method == SCENE_GI_PROBES)
+		out->surfels = gi_plan_surfels(facts, &out->gi);
+	complete(out, facts);
+}
+
+bool gi_plan_baked(struct gi_plan *plan, const struct gi_facts *facts, const struct gi_costs *costs,
+		   size_t surfels, struct gi_plan *out_right)
+{
+	const struct gi_costs *c = gi_costs_valid(costs) ? costs : &gi_costs_usual;
+	double spacing = (double)plan->gi.spacing_m, budget = (double)plan->gi.budget_ms;
+	struct gi_facts found = *facts;
+	double flat = SURFEL_DENSITY * facts->area_m2 / (spacing * spacing);
+
+	plan->surfels = (double)surfels;
+	plan->baked = true;
+	plan->update_ms = cost_of(facts, &plan->gi, c, plan->surfels);
+	plan->within = plan->update_ms <= budget;
+	complete(plan, facts);
+	found.edge_surfels_m = fmax(0, (plan->surfels - flat) * spacing);
+	gi_plan_make(out_right, &found, &plan->gi, c);
+	return !(plan->update_ms > GI_PLAN_LEEWAY * budget);
 }

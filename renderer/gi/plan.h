@@ -3,8 +3,8 @@
  * settings, from what the scene holds and what a frame may cost. A pure
  * function: equal facts, wishes and costs give equal plans on every machine.
  *
- * Costs are measured on the GPU (calibrate.h), errors come from the bench's
- * table (plan_error.c). What is chosen errs least of all that fits the budget;
+ * Costs are measured on the GPU (calibrate.h), errors are fitted to the bench
+ * (plan_error.c). What is chosen errs least of all that fits the budget;
  * of what errs alike (within GI_PLAN_ALIKE) the cheapest. So a larger budget
  * never gives a larger error.
  *
@@ -29,10 +29,18 @@ struct gi_facts {
 	double absorption_per_m, scattering_per_m;
 	bool environment;    /* light from all around */
 	double mirror_share; /* of the area that is mirror, conductor or highlight more than diffuse, 0..1 */
-	bool moving_geometry; /* things that move; scene files of this version have none */
+	bool moving_geometry; /* things that move; models of this version are loaded without their animations */
+	double edge_surfels_m; /* what edges and small pieces add: surfels times metres of spacing; 0: not looked for */
 };
 /* Never fails; a scene without triangles has area 0. */
 void gi_facts_take(struct gi_facts *out, const struct scene *scene, const struct scene_file *file);
+/*
+ * Finds edge_surfels_m: surfels are placed once, coarsely (surfel_count.h). Of
+ * the scene alone, whatever was baked before: all nodes find the same. Some
+ * tenths of a second and what Embree takes for the scene. GR_OK; as
+ * surfel_count, facts unchanged.
+ */
+int gi_facts_count(struct gi_facts *facts, const struct scene *scene);
 
 /* Time of a GPU for each unit of work, nanoseconds; docs/bench.md says how they are measured. */
 struct gi_costs {
@@ -50,13 +58,18 @@ bool gi_costs_valid(const struct gi_costs *costs);
 /* Errors closer than this factor are alike. */
 #define GI_PLAN_ALIKE 1.05
 
+#define GI_PLAN_TEXT 96 /* with the NUL; printable ASCII */
 struct gi_plan {
-	struct scene_gi gi; /* never SCENE_GI_AUTO */
+	struct scene_gi gi; /* never SCENE_GI_AUTO; its budget_ms as wanted */
 	double update_ms;   /* expected, of a frame in which the light changes; 0 when steady */
 	double error;       /* expected nRMSE of irradiance on surfaces; a share */
+	double error_least, error_most; /* between which scenes like the bench's lie */
+	double surfels;     /* expected, or as baked; 0: none */
+	bool baked;         /* surfels is what was baked */
 	bool within;        /* the budget; false: this is the least that there is */
 	uint64_t hash;      /* of what shapes the light: equal exactly when walls would agree */
-	char why[320];      /* for the log */
+	char why[720];      /* for the log */
+	char text[GI_PLAN_TEXT]; /* in short, for the room's status */
 };
 /*
  * wanted: what the scene file says; its budget, and the settings that are no
@@ -64,12 +77,30 @@ struct gi_plan {
  */
 void gi_plan_make(struct gi_plan *out, const struct gi_facts *facts, const struct scene_gi *wanted,
 		  const struct gi_costs *costs);
+/* Costs are measured to about this factor: by less a budget is not exceeded. */
+#define GI_PLAN_LEEWAY 1.1
+/*
+ * Once the surfels are there: cost and text by their real number. What is
+ * baked stays, so that nodes cannot differ by what each had baked before. False:
+ * it costs more than the budget by GI_PLAN_LEEWAY; *out_right: the plan that
+ * this number would have led to.
+ */
+bool gi_plan_baked(struct gi_plan *plan, const struct gi_facts *facts, const struct gi_costs *costs,
+		   size_t surfels, struct gi_plan *out_right);
+/* Settings in words, as "surfels 0.2 m apart, 256 links, 1 gather, 16 taps". */
+void gi_plan_settings(char *text, size_t size, const struct scene_gi *gi);
+/* The short text of settings that no plan was made for; surfels 0: none. */
+void gi_plan_text(char text[GI_PLAN_TEXT], const struct scene_gi *gi, size_t surfels);
 /* Whether there is anything to choose by cost. */
 bool gi_plan_needs_costs(const struct gi_facts *facts);
 /* What settings cost and how they err, by the same models. ms of a frame; a share. */
 double gi_plan_cost_ms(const struct gi_facts *facts, const struct scene_gi *gi,
 		       const struct gi_costs *costs);
 double gi_plan_error(const struct gi_facts *facts, const struct scene_gi *gi);
+/* The factors over and under it within which the bench's scenes lie; >= 1. */
+void gi_plan_spread(enum scene_gi_method method, double *out_under, double *out_over);
+/* Of the light on surfels, a share that absorbing air should take and does not: it is fixed at baking. */
+double gi_plan_unthinned(const struct gi_facts *facts);
 /* About how many surfels settings give. */
 double gi_plan_surfels(const struct gi_facts *facts, const struct scene_gi *gi);
 /* Of what shapes the light in settings, whether planned or written in a file. */

@@ -1,4 +1,7 @@
-#include "renderer/gi/plan.h"
+#include "renderer/gi/plan_private.h"
+
+#include "base/result.h"
+#include "renderer/gi/surfel_count.h"
 
 #include <math.h>
 #include <string.h>
@@ -64,4 +67,25 @@ void gi_facts_take(struct gi_facts *out, const struct scene *scene, const struct
 		else
 			out->lamps_moving++;
 	}
+}
+
+/* Surfels that a flat scene of that area would have when they are counted. */
+#define COUNT_FLAT 2000
+
+int gi_facts_count(struct gi_facts *facts, const struct scene *scene)
+{
+	double spacing = sqrt(SURFEL_DENSITY * facts->area_m2 / COUNT_FLAT), edge, power;
+	size_t count;
+	int result;
+
+	if (!isfinite(spacing) || !(spacing > 0))
+		return GR_ERR_RANGE;
+	result = surfel_count(scene, (float)spacing, 0, &count);
+	if (result != GR_OK)
+		return result;
+	edge = fmax(0, ((double)count - COUNT_FLAT) * spacing);
+	/* two digits: what rounding does to a few rays on another processor must not choose */
+	power = edge > 0 ? pow(10, floor(log10(edge)) - 1) : 1;
+	facts->edge_surfels_m = round(edge / power) * power;
+	return GR_OK;
 }

@@ -57,7 +57,7 @@ static void begin_stage(struct bake *bake, const char *name, double until)
 
 /* --- lengths --- */
 
-static void set_spacing(struct bake *bake, float spacing)
+void bake_set_spacing(struct bake *bake, float spacing)
 {
 	bake->spacing = spacing;
 	bake->radius = BAKE_RADIUS * spacing;
@@ -120,8 +120,7 @@ static int refuse_spacing(const struct bake *bake, double surfels)
 
 /* --- steps --- */
 
-/* Surfels such that every point hears one. */
-static int place(struct bake *bake)
+int bake_place(struct bake *bake)
 {
 	int result = bake_choose(bake, NULL, 0);
 
@@ -159,14 +158,14 @@ static int place_all(struct bake *bake)
 	double to_expect;
 	int result;
 
-	set_spacing(bake, ours ? usual_spacing(bake) : bake->params.spacing_m);
+	bake_set_spacing(bake, ours ? usual_spacing(bake) : bake->params.spacing_m);
 	for (;;) {
 		to_expect = 0.7 * bake->area / ((double)bake->spacing * (double)bake->spacing);
 		begin_stage(bake, "points", 0.1);
 		result = fits(bake, to_expect) ? bake_points(bake) : GR_ERR_RANGE;
 		begin_stage(bake, "surfels", 0.3);
 		if (result == GR_OK)
-			result = place(bake);
+			result = bake_place(bake);
 		if (result == GR_OK && !fits(bake, (double)bake->chosen_count))
 			result = GR_ERR_RANGE;
 		if (result == GR_OK && ours && bake->chosen_count > 4 * SURFEL_USUAL)
@@ -178,7 +177,7 @@ static int place_all(struct bake *bake)
 			return refuse_spacing(bake, fmax(to_expect, (double)bake->chosen_count));
 		drop_points(bake);
 		bake->stage_to = 0;
-		set_spacing(bake, bake->spacing * WIDEN);
+		bake_set_spacing(bake, bake->spacing * WIDEN);
 	}
 }
 
@@ -221,7 +220,7 @@ static int make_empty(struct bake *bake)
 	return surfel_grid_build(set, origin, origin);
 }
 
-static void finish(struct bake *bake)
+void bake_finish(struct bake *bake)
 {
 	world_finish(&bake->world);
 	drop_points(bake);
@@ -272,6 +271,6 @@ int bake_then(struct surfel_set **out, const struct scene *scene, const struct s
 		*out = bake.set;
 		bake.set = NULL;
 	}
-	finish(&bake);
+	bake_finish(&bake);
 	return result;
 }

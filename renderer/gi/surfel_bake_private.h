@@ -172,6 +172,12 @@ size_t bake_cells_of(const struct bake_cells *cells, uint64_t key, const uint32_
 size_t bake_cells_at(const struct bake_cells *cells, struct v3 position, const int step[3],
 		     const uint32_t **out_items);
 
+/* Lengths that go with a spacing. */
+void bake_set_spacing(struct bake *bake, float spacing);
+/* Surfels among the points such that every point hears one. */
+int bake_place(struct bake *bake);
+/* All that the baker holds, its set too. */
+void bake_finish(struct bake *bake);
 /* As surfel_bake; `then` sees the baker before it goes: for measuring. NULL: none. */
 int bake_then(struct surfel_set **out, const struct scene *scene, const struct scene_file *file,
 	      const struct surfel_bake_params *params, struct gr_diag *diag,

@@ -3,6 +3,7 @@
 #include "base/cursor.h"
 #include "base/diag.h"
 #include "base/log.h"
+#include "base/plain.h"
 #include "base/pose.h"
 #include "base/result.h"
 
@@ -149,10 +150,41 @@ static void test_result_names(void **state)
 	assert_string_equal(gr_result_name(-1000), "unknown result");
 }
 
+static void plain(const char *expected, double value, int digits)
+{
+	struct gr_plain said = gr_plain(value, digits);
+
+	assert_string_equal(said.text, expected);
+}
+
+static void test_plain_numbers(void **state)
+{
+	(void)state;
+	plain("110", 110, 2);
+	plain("120", 115.1, 2);
+	plain("1073741824", 1073741824, 15);
+	plain("1000000000", 1e9, 15);
+	plain("0.00021", 0.000214, 2);
+	plain("12.5", 12.5, 4);
+	plain("13", 12.5001, 2);
+	plain("8", 8, 3);
+	plain("-0.5", -0.5, 15);
+	plain("0", 0, 3);
+	plain("1e+16", 1e16, 3);
+	plain("1.3e-12", 1.3e-12, 2);
+	plain("nan", (double)NAN, 3);
+	plain("-inf", -(double)INFINITY, 3);
+	assert_string_equal(gr_plain_percent(1.1).text, "110 %");
+	assert_string_equal(gr_plain_percent(0.0312).text, "3.1 %");
+	assert_string_equal(gr_plain_percent(0.00042).text, "0.042 %");
+	assert_string_equal(gr_plain_percent(1e300).text, "1e+302 %");
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_cursor_round_trip),
+		cmocka_unit_test(test_plain_numbers),
 		cmocka_unit_test(test_cursor_every_short_length),
 		cmocka_unit_test(test_pose_algebra),
 		cmocka_unit_test(test_pose_valid),

@@ -38,7 +38,7 @@ static void method_follows_the_scene(void **state)
 	assert_int_equal(plan.gi.method, SCENE_GI_SURFELS);
 	assert_true(plan.within && plan.update_ms <= 30 && plan.error < 0.1);
 	assert_non_null(strstr(plan.why, "surfels"));
-	assert_non_null(strstr(plan.why, "static surfaces"));
+	assert_non_null(strstr(plan.why, "nothing moves but lamps"));
 	printf("# %s\n", plan.why);
 	facts.scattering_per_m = 0.1;
 	plan = plan_for(&facts, 30);
@@ -79,6 +79,97 @@ static void nothing_to_light(void **state)
 	assert_non_null(strstr(plan.why, "no surface"));
 }
 
+/* What is told is what a person can read, and what fits where it goes. */
+static void words(void **state)
+{
+	struct gi_facts facts = room();
+	struct gi_plan plan;
+
+	(void)state;
+	for (double area = 1e-6; area < 1e12; area *= 10) {
+		facts.area_m2 = area;
+		for (double budget = 0.1; budget < 1e5; budget *= 10) {
+			plan = plan_for(&facts, budget);
+			assert_null(strstr(plan.why, "e+"));
+			assert_null(strstr(plan.text, "e+"));
+			assert_true(strlen(plan.text) > 20);
+			assert_true(plan.error_least <= plan.error && plan.error <= plan.error_most);
+		}
+	}
+	facts = room();
+	plan = plan_for(&facts, 30);
+	printf("# %s\n", plan.text);
+	assert_non_null(strstr(plan.text, " ms, error "));
+}
+
+/* Surfels along edges and on small pieces cost as others do. */
+static void edges_count(void **state)
+{
+	struct gi_facts facts = room();
+	const struct gi_plan flat = plan_for(&facts, 30);
+	struct gi_plan plan;
+
+	(void)state;
+	facts.edge_surfels_m = 1000;
+	plan = plan_for(&facts, 30);
+	assert_true(plan.within && plan.update_ms <= 30);
+	assert_true(plan.error > flat.error);
+	assert_true(gi_plan_surfels(&facts, &flat.gi) > 1.5 * flat.surfels);
+	assert_true(gi_plan_cost_ms(&facts, &flat.gi, &gi_costs_usual) > 30);
+	printf("# with edges: %s\n", plan.why);
+}
+
+/* The number that was baked decides what is told, and what would have been right. */
+static void as_baked(void **state)
+{
+	struct gi_facts facts = room();
+	struct gi_plan plan = plan_for(&facts, 30), right;
+	const uint64_t hash = plan.hash;
+	const double expected_ms = plan.update_ms;
+
+	(void)state;
+	assert_true(gi_plan_baked(&plan, &facts, &gi_costs_usual, (size_t)plan.surfels, &right));
+	assert_true(plan.baked && fabs(plan.update_ms - expected_ms) < 0.01 * expected_ms);
+	assert_false(gi_plan_baked(&plan, &facts, &gi_costs_usual, (size_t)(3 * plan.surfels), &right));
+	assert_false(plan.within);
+	assert_true(plan.update_ms > 60);
+	assert_int_equal(plan.hash, hash); /* what walls compute is as it was */
+	assert_true(right.within && right.update_ms <= 30 && right.hash != plan.hash);
+	printf("# three times as many: %s; right: %s\n", plan.text, right.text);
+}
+
+/* Light that is fixed at baking is not thinned by air that absorbs. */
+static void air_that_absorbs(void **state)
+{
+	struct gi_facts facts = room();
+	struct gi_plan plan;
+	double last = 0;
+
+	(void)state;
+	facts.absorption_per_m = 0.2;
+	assert_true(gi_plan_unthinned(&facts) <= 0);
+	facts.emissive_triangles = 2;
+	for (double sigma = 0.001; sigma < 100; sigma *= 2) {
+		facts.absorption_per_m = sigma;
+		assert_true(gi_plan_unthinned(&facts) >= last);
+		last = gi_plan_unthinned(&facts);
+		assert_true(isfinite(plan_for(&facts, 30).error));
+	}
+	facts.absorption_per_m = 0.005;
+	plan = plan_for(&facts, 30);
+	assert_int_equal(plan.gi.method, SCENE_GI_SURFELS);
+	assert_non_null(strstr(plan.why, "does not thin the light of emissive surfaces"));
+	printf("# 0.005 1/m: %s\n", plan.why);
+	facts.absorption_per_m = 0.3;
+	plan = plan_for(&facts, 100);
+	assert_int_equal(plan.gi.method, SCENE_GI_LPV);
+	printf("# 0.3 1/m: %s\n", plan.why);
+	facts.environment = true; /* which the lattice does not know */
+	plan = plan_for(&facts, 100);
+	assert_int_equal(plan.gi.method, SCENE_GI_SURFELS);
+	assert_non_null(strstr(plan.why, "emissive surfaces and the environment"));
+}
+
 static void absurd_wishes(void **state)
 {
 	const double budgets[] = { 0, -1, 1e-30, (double)NAN, -(double)INFINITY };
@@ -87,7 +178,7 @@ static void absurd_wishes(void **state)
 
 	(void)state;
 	assert_false(least.within);
-	assert_non_null(strstr(least.why, "the budget is less than the least costs"));
+	assert_non_null(strstr(least.why, "is less than the least costs"));
 	for (size_t i = 0; i < sizeof budgets / sizeof *budgets; i++) {
 		struct gi_plan plan = plan_for(&facts, budgets[i]);
 
@@ -152,6 +243,8 @@ static struct gi_facts any_facts(struct unit_random *r)
 	facts.environment = unit_random_u32(r) % 3 == 0;
 	facts.mirror_share = unit_random_u32(r) % 2 ? 0 : unit_random_range(r, 0, 1);
 	facts.moving_geometry = unit_random_u32(r) % 5 == 0;
+	facts.absorption_per_m = unit_random_u32(r) % 3 ? 0 : pow(10, unit_random_range(r, -3, 1));
+	facts.edge_surfels_m = unit_random_u32(r) % 2 ? 0 : size * pow(10, unit_random_range(r, 0, 4));
 	return facts;
 }
 
@@ -235,6 +328,10 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(method_follows_the_scene),
 		cmocka_unit_test(nothing_to_light),
+		cmocka_unit_test(words),
+		cmocka_unit_test(edges_count),
+		cmocka_unit_test(as_baked),
+		cmocka_unit_test(air_that_absorbs),
 		cmocka_unit_test(absurd_wishes),
 		cmocka_unit_test(costs_that_are_none),
 		cmocka_unit_test(more_budget_is_never_worse),

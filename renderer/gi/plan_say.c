@@ -1,0 +1,128 @@
+/* A plan in words: what, why, at what cost. */
+#include "renderer/gi/plan_private.h"
+
+#include "base/plain.h"
+
+#include <stdio.h>
+#include <string.h>
+
+void gi_plan_settings(char *text, size_t size, const struct scene_gi *gi)
+{
+	char probes[48] = "", spacing[48] = "usual spacing";
+
+	if (gi->method == SCENE_GI_PROBES)
+		snprintf(probes, sizeof probes, "%d probes along the longest side, ", gi->probes);
+	if (gi->spacing_m > 0)
+		snprintf(spacing, sizeof spacing, "%s m apart", gr_plain((double)gi->spacing_m, 3).text);
+	switch (gi->method) {
+	case SCENE_GI_LPV:
+		snprintf(text, size, "a lattice of %d cells, %d steps", gi->lattice, gi->steps);
+		break;
+	case SCENE_GI_SURFELS:
+	case SCENE_GI_PROBES:
+		snprintf(text, size, "%ssurfels %s, %d links, %d gather%s, %d taps", probes, spacing,
+			 gi->links, gi->gathers, gi->gathers == 1 ? "" : "s", gi->taps);
+		break;
+	case SCENE_GI_NONE:
+	case SCENE_GI_AUTO:
+		snprintf(text, size, "none");
+		break;
+	}
+}
+
+static const char *fixed_light(const struct gi_facts *facts)
+{
+	if (!facts->environment)
+		return "emissive surfaces";
+	return facts->emissive_triangles > 0 ? "emissive surfaces and the environment" : "the environment";
+}
+
+static void put_reason(char *text, size_t size, const struct gi_facts *facts, const struct gi_plan *plan)
+{
+	bool lattice = plan->gi.method == SCENE_GI_LPV;
+	const char *still = facts->moving_geometry
+				    ? "things move, and only probes light what is not baked"
+				    : "nothing moves but lamps";
+
+	if (plan->gi.method == SCENE_GI_NONE)
+		snprintf(text, size, "%s",
+			 gi_plan_has_light(facts) ? "no surface can be lit"
+						  : "no lamp, no emissive surface, no environment");
+	else if (facts->scattering_per_m > 0)
+		snprintf(text, size, "the air scatters, which only the lattice carries%s",
+			 facts->environment ? "; it leaves the environment out" : "");
+	else if (gi_plan_unthinned(facts) > 0)
+		snprintf(text, size, "%s; the air absorbs, which on surfels does not thin the light of %s",
+			 lattice ? "the lattice errs less here" : still, fixed_light(facts));
+	else
+		snprintf(text, size, "%s%s", still,
+			 facts->environment ? "; there is an environment, which the lattice does not know" : "");
+}
+
+static void put_error(char *text, size_t size, const struct gi_plan *plan)
+{
+	snprintf(text, size, "%s (%s to %s)", gr_plain_percent(plan->error).text,
+		 gr_plain_percent(plan->error_least).text, gr_plain_percent(plan->error_most).text);
+}
+
+void gi_plan_text(char text[GI_PLAN_TEXT], const struct scene_gi *gi, size_t surfels)
+{
+	char spacing[48] = "";
+
+	switch (gi->method) {
+	case SCENE_GI_LPV:
+		snprintf(text, GI_PLAN_TEXT, "lattice, %d cells, %d steps", gi->lattice, gi->steps);
+		break;
+	case SCENE_GI_SURFELS:
+	case SCENE_GI_PROBES:
+		if (gi->spacing_m > 0)
+			snprintf(spacing, sizeof spacing, " %s m apart", gr_plain((double)gi->spacing_m, 3).text);
+		snprintf(text, GI_PLAN_TEXT, "%s%s, %zu x %d links",
+			 gi->method == SCENE_GI_PROBES ? "probes, surfels" : "surfels", spacing, surfels,
+			 gi->links);
+		break;
+	case SCENE_GI_NONE:
+	case SCENE_GI_AUTO:
+		snprintf(text, GI_PLAN_TEXT, "no indirect light");
+		break;
+	}
+}
+
+/* The settings, then what is expected; what would not fit is left out whole. */
+static void put_text(struct gi_plan *plan)
+{
+	size_t len;
+	char error[112];
+
+	gi_plan_text(plan->text, &plan->gi, (size_t)plan->surfels);
+	if (plan->gi.method == SCENE_GI_NONE)
+		return;
+	len = strlen(plan->text);
+	put_error(error, sizeof error, plan);
+	if ((size_t)snprintf(plan->text + len, GI_PLAN_TEXT - len, ": %s ms, error %s",
+			     gr_plain(plan->update_ms, 3).text, error) >= GI_PLAN_TEXT - len)
+		plan->text[len] = 0;
+}
+
+void gi_plan_say(struct gi_plan *plan, const struct gi_facts *facts)
+{
+	char settings[160], reason[200], error[112], count[48] = "", over[96] = "";
+
+	gi_plan_settings(settings, sizeof settings, &plan->gi);
+	put_reason(reason, sizeof reason, facts, plan);
+	put_error(error, sizeof error, plan);
+	put_text(plan);
+	if (plan->gi.method == SCENE_GI_NONE) {
+		snprintf(plan->why, sizeof plan->why, "none: %s", reason);
+		return;
+	}
+	if (plan->surfels > 0)
+		snprintf(count, sizeof count, "%s surfels, ", gr_plain(plan->surfels, 4).text);
+	if (!plan->within && !plan->baked)
+		snprintf(over, sizeof over, "; the budget of %s ms is less than the least costs",
+			 gr_plain((double)plan->gi.budget_ms, 3).text);
+	snprintf(plan->why, sizeof plan->why,
+		 "%s: %s; %s%s%s ms a frame while the light changes%s, expected error (nRMSE) %s%s", settings,
+		 reason, plan->baked ? "" : "expected ", count, gr_plain(plan->update_ms, 3).text,
+		 facts->lamps_moving ? "" : " (no lamp moves by itself)", error, over);
+}
