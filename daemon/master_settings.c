@@ -1,5 +1,6 @@
 #include "daemon/master_settings.h"
 
+#include "base/plain.h"
 #include "base/result.h"
 
 #include <errno.h>
@@ -114,8 +115,8 @@ static int set_lamp_intensity(struct master_settings *settings, const struct sce
 		return GR_ERR_RANGE;
 	for (int i = 0; i < 3; i++) {
 		if (!parse_number(words[2 + i], false, info->min, info->max, &rgb[i])) {
-			snprintf(why, size, "lamp_intensity '%.40s': give %g to %g %s", words[2 + i],
-				 info->min, info->max, info->unit);
+			snprintf(why, size, "lamp_intensity '%.40s': give %s to %s %s", words[2 + i],
+				 gr_plain(info->min, 6).text, gr_plain(info->max, 6).text, info->unit);
 			return GR_ERR_RANGE;
 		}
 	}
@@ -132,8 +133,9 @@ static int set_simple(struct master_settings *settings, const struct simple_sett
 	double value;
 
 	if (count != 2 || !parse_number(words[1], setting->whole, info->min, info->max, &value)) {
-		snprintf(why, size, "%s: give one %snumber from %g to %g%s%s", setting->name,
-			 setting->whole ? "whole " : "", info->min, info->max,
+		snprintf(why, size, "%s: give one %snumber from %s to %s%s%s", setting->name,
+			 setting->whole ? "whole " : "", gr_plain(info->min, 6).text,
+			 gr_plain(info->max, 6).text,
 			 *info->unit ? " " : "", info->unit);
 		return GR_ERR_RANGE;
 	}

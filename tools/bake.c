@@ -1,4 +1,5 @@
 /* grotto bake SCENE: computes a scene's surfels before the room starts. */
+#include "base/plain.h"
 #include "base/result.h"
 #include "renderer/gi/surfel_store.h"
 #include "renderer/scene/scene.h"
@@ -88,14 +89,15 @@ static void report(const struct bake_run *run)
 
 	for (size_t i = 0; i < set->probes.count; i++)
 		alive += set->probes.alive[i];
-	printf("%zu triangles: %zu surfels %.3g m apart, %u links and %u taps each\n",
-	       run->scene->index_count / 3, set->count, (double)set->spacing_m, set->links_each,
+	printf("%zu triangles: %zu surfels %s m apart, %u links and %u taps each\n",
+	       run->scene->index_count / 3, set->count, gr_plain((double)set->spacing_m, 3).text, set->links_each,
 	       set->taps_each);
 	if (set->probes.count > 0)
-		printf("%zu probes, %zu of them alive, %.3g m apart\n", set->probes.count, alive,
-		       (double)set->probes.cell_m);
-	printf("%s%.2f s on %d thread%s, %.3g rays", run->done.baked ? "" : "baked before in ",
-	       set->seconds, set->threads, set->threads == 1 ? "" : "s", (double)set->rays);
+		printf("%zu probes, %zu of them alive, %s m apart\n", set->probes.count, alive,
+		       gr_plain((double)set->probes.cell_m, 3).text);
+	printf("%s%.2f s on %d thread%s, %s rays", run->done.baked ? "" : "baked before in ",
+	       set->seconds, set->threads, set->threads == 1 ? "" : "s",
+	       gr_plain((double)set->rays, 3).text);
 	if (set->ray_seconds > 0)
 		printf(", links at %.2f million rays/s",
 		       (double)set->count * set->links_each / set->ray_seconds * 1e-6);

@@ -1,5 +1,6 @@
 #include "tools/cli.h"
 
+#include "base/plain.h"
 #include "config/suggest.h"
 
 #include <errno.h>
@@ -62,8 +63,9 @@ static bool set_number(const struct cli_option *spec, const char *text)
 
 	if (!parse_number(text, &number) || (integer && number != floor(number)) ||
 	    number < spec->min || number > spec->max) {
-		fprintf(stderr, "--%s: '%s' is not %s from %g to %g\n", spec->name, text,
-			integer ? "a whole number" : "a number", spec->min, spec->max);
+		fprintf(stderr, "--%s: '%s' is not %s from %s to %s\n", spec->name, text,
+			integer ? "a whole number" : "a number", gr_plain(spec->min, 15).text,
+			gr_plain(spec->max, 15).text);
 		return false;
 	}
 	if (integer)
@@ -79,8 +81,8 @@ static bool set_size(const struct cli_option *spec, const char *text)
 
 	if (!parse_size(text, size) || size[0] < spec->min || size[0] > spec->max ||
 	    size[1] < spec->min || size[1] > spec->max) {
-		fprintf(stderr, "--%s: '%s' is not WIDTHxHEIGHT, each from %g to %g\n", spec->name,
-			text, spec->min, spec->max);
+		fprintf(stderr, "--%s: '%s' is not WIDTHxHEIGHT, each from %s to %s\n", spec->name,
+			text, gr_plain(spec->min, 15).text, gr_plain(spec->max, 15).text);
 		return false;
 	}
 	memcpy(spec->value, size, sizeof size);

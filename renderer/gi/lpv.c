@@ -1,6 +1,7 @@
 #include "renderer/gi/lpv_private.h"
 
 #include "base/log.h"
+#include "base/plain.h"
 #include "base/result.h"
 #include "renderer/gl/program.h"
 #include "renderer/trace/rays.h"
@@ -498,11 +499,11 @@ static void say(struct lpv *lpv, const struct links *links, const struct scene_f
 	const int *size = lpv->lattice.size;
 
 	snprintf(lpv->description, sizeof lpv->description,
-		 "light propagation volumes%s, %d x %d x %d cells of %.3g m, %d steps a frame: diffuse "
+		 "light propagation volumes%s, %d x %d x %d cells of %s m, %d steps a frame: diffuse "
 		 "light between surfaces; %zu cells meet surfaces (%zu rays, once), steady after %d steps, from darkness "
 		 "after %d",
 		 lpv->is_thesis ? " (thesis scheme)" : "", size[0], size[1], size[2],
-		 (double)lpv->lattice.d, file->gi.steps,
+		 gr_plain((double)lpv->lattice.d, 3).text, file->gi.steps,
 		 links->surface_count, links->rays, lpv->settle_steps, lpv_start_steps(lpv));
 }
 
@@ -521,9 +522,10 @@ int gi_lpv_create(struct gi_method **out, const struct scene *scene,
 	lpv->base.ops = lpv->is_thesis ? &thesis_ops : &repaired_ops;
 	result = lattice_init(&lpv->lattice, scene->min, scene->max, file->gi.lattice);
 	if (result != GR_OK) {
-		gr_error("light lattice: %d cells over a scene of %g x %g x %g m cannot be", file->gi.lattice,
-			 (double)(scene->max[0] - scene->min[0]), (double)(scene->max[1] - scene->min[1]),
-			 (double)(scene->max[2] - scene->min[2]));
+		gr_error("light lattice: %d cells over a scene of %s x %s x %s m cannot be", file->gi.lattice,
+			 gr_plain((double)(scene->max[0] - scene->min[0]), 4).text,
+			 gr_plain((double)(scene->max[1] - scene->min[1]), 4).text,
+			 gr_plain((double)(scene->max[2] - scene->min[2]), 4).text);
 		goto out;
 	}
 	result = rays_create(&rays, scene);

@@ -1,6 +1,7 @@
 #include "renderer/gi/surfel_bake_private.h"
 
 #include "base/clock.h"
+#include "base/plain.h"
 #include "base/result.h"
 
 #include <stdlib.h>
@@ -77,8 +78,8 @@ static int check_params(const struct surfel_bake_params *p, struct gr_diag *diag
 {
 	if (!(p->spacing_m >= 0 && p->spacing_m <= 1e6f)) {
 		gr_diag_add(diag, GR_DIAG_ERROR, NULL, 0, "spacing_m",
-			    "%g m: 0 (chosen from the scene's area) to 1e6 m are accepted",
-			    (double)p->spacing_m);
+			    "%s m: 0 (chosen from the scene's area) to 1000000 m are accepted",
+			    gr_plain((double)p->spacing_m, 6).text);
 		return GR_ERR_RANGE;
 	}
 	if (p->links < 16 || p->links > 4096) {
@@ -111,10 +112,11 @@ static int refuse_spacing(const struct bake *bake, double surfels)
 			   (double)SURFEL_LINKS_MOST / (double)bake->params.links);
 
 	gr_diag_add(bake->diag, GR_DIAG_ERROR, NULL, 0, "spacing_m",
-		    "%g m gives more than %.0f surfels with %d links each on %.4g m^2 of surfaces; "
-		    "%.2g m or more, or 0, would do",
-		    (double)bake->spacing, most, bake->params.links, bake->area,
-		    (double)bake->spacing * fmax(sqrt(surfels / most), 1.05) * 1.05);
+		    "%s m gives more than %.0f surfels with %d links each on %s m^2 of surfaces; "
+		    "%s m or more, or 0, would do",
+		    gr_plain((double)bake->spacing, 6).text, most, bake->params.links,
+		    gr_plain(bake->area, 4).text,
+		    gr_plain((double)bake->spacing * fmax(sqrt(surfels / most), 1.05) * 1.05, 2).text);
 	return GR_ERR_RANGE;
 }
 

@@ -177,7 +177,7 @@ static int read_samples(struct words *w, const double (*weights)[3], struct brdf
 
 	while ((result = next_number(w, &theta_i)) == GR_OK) {
 		if (out->count == BRDF_MAX_SAMPLES)
-			return refuse(w, "more than %g samples", BRDF_MAX_SAMPLES);
+			return refuse(w, "more than %.0f samples", (double)BRDF_MAX_SAMPLES);
 		result = grow(out, &room);
 		if (result == GR_OK)
 			result = read_sample(w, weights, theta_i, out);
@@ -188,7 +188,7 @@ static int read_samples(struct words *w, const double (*weights)[3], struct brdf
 	if (result != GR_NOTHING)
 		return result;
 	return out->count >= 16 ? GR_OK
-				: refuse(w, "%g samples; at least 16 make a table", (double)out->count);
+				: refuse(w, "%.0f samples; at least 16 make a table", (double)out->count);
 }
 
 int brdf_read(const char *text, size_t len, const char *name, struct brdf_samples *out,

@@ -1,5 +1,7 @@
 #include "renderer/scene/environment_private.h"
 
+#include "base/plain.h"
+
 #include <math.h>
 #include <sodium.h>
 #include <stdio.h>
@@ -133,12 +135,14 @@ void environment_describe(const struct environment *environment, char *text, siz
 	environment_irradiance(environment, up, e);
 	if (environment->width)
 		snprintf(text, size, "a picture of %d x %d pixels%s, irradiance of open ground "
-			 "%.4g %.4g %.4g W/m2", environment->width, environment->height, where,
-			 (double)e[0], (double)e[1], (double)e[2]);
+			 "%s %s %s W/m2", environment->width, environment->height, where,
+			 gr_plain((double)e[0], 4).text, gr_plain((double)e[1], 4).text,
+			 gr_plain((double)e[2], 4).text);
 	else
-		snprintf(text, size, "constant radiance %.4g %.4g %.4g W/(m2 sr)%s",
-			 (double)environment->constant[0], (double)environment->constant[1],
-			 (double)environment->constant[2], where);
+		snprintf(text, size, "constant radiance %s %s %s W/(m2 sr)%s",
+			 gr_plain((double)environment->constant[0], 4).text,
+			 gr_plain((double)environment->constant[1], 4).text,
+			 gr_plain((double)environment->constant[2], 4).text, where);
 }
 
 void environment_hash(const struct environment *environment, uint8_t out[32])

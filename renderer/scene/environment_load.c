@@ -1,6 +1,7 @@
 /* From what a scene file says, or a picture, to an environment. */
 #include "renderer/scene/environment_private.h"
 
+#include "base/plain.h"
 #include "base/result.h"
 
 #include <math.h>
@@ -25,9 +26,10 @@ static int check_pixels(const struct image *image, float scale, const char *name
 		}
 		if ((double)value * (double)scale > (double)ENVIRONMENT_MAX_RADIANCE) {
 			gr_diag_add(diag, GR_DIAG_ERROR, name, 0, NULL,
-				    "pixel %zu of row %zu is %g, times its scale %g more than %g W/(m2 sr)",
-				    i % per_row / (size_t)image->channels, i / per_row, (double)value,
-				    (double)scale, (double)ENVIRONMENT_MAX_RADIANCE);
+				    "pixel %zu of row %zu is %s, times its scale %s more than %s W/(m2 sr)",
+				    i % per_row / (size_t)image->channels, i / per_row,
+				    gr_plain((double)value, 4).text, gr_plain((double)scale, 4).text,
+				    gr_plain((double)ENVIRONMENT_MAX_RADIANCE, 4).text);
 			return GR_ERR_CONFIG;
 		}
 		*negative += value < 0;

@@ -4,6 +4,7 @@
  * since a machine is rarely alone.
  */
 #include "base/clock.h"
+#include "base/plain.h"
 #include "base/result.h"
 #include "renderer/gi/surfel_bake_private.h"
 #include "renderer/scene/import.h"
@@ -155,8 +156,8 @@ static int measure(const struct scene *scene)
 	gr_diag_finish(&diag);
 	if (result != GR_OK)
 		return result;
-	printf("%zu triangles: %zu surfels of %.3g m, %zu probes: %.1f s on %d threads (links %.1f s), %.1f MB\n",
-	       scene->index_count / 3, set->count, (double)set->spacing_m, set->probes.count,
+	printf("%zu triangles: %zu surfels of %s m, %zu probes: %.1f s on %d threads (links %.1f s), %.1f MB\n",
+	       scene->index_count / 3, set->count, gr_plain((double)set->spacing_m, 3).text, set->probes.count,
 	       set->seconds, set->threads, set->ray_seconds, (double)surfel_set_bytes(set) * 1e-6);
 	surfel_set_destroy(&set);
 	return GR_OK;

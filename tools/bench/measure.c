@@ -68,6 +68,8 @@ static int open_run(struct run *run, struct bench_result *out)
 		return GR_ERR_NOMEM;
 	result = renderer_create(&run->renderer, run->view->target, &params, &run->file,
 				 run->view->scene);
+	if (result == GR_OK)
+		out->surfels = renderer_surfels(run->renderer);
 	out->create_s = (double)(gr_clock_now(&gr_clock_monotonic) - start) * 1e-9;
 	return result;
 }

@@ -42,6 +42,7 @@ struct bench_result {
 	struct bench_case used;  /* what ran; for auto: what it chose */
 	double create_s;         /* renderer with all that it computes once; tracing and baking included */
 	uint64_t gpu_bytes;      /* the light field's */
+	size_t surfels;          /* 0: another method */
 	struct bench_stage stages[TIMER_STAGES]; /* while a lamp moves */
 	double frame_ms;         /* sum of the stages' medians */
 	bool moves;              /* the scene has a lamp to move; false: the air changed a little instead */

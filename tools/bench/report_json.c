@@ -87,6 +87,7 @@ static struct json_object *result(const struct bench_report *report, size_t i)
 	settings(object(o, "settings"), &r->used.gi);
 	number(o, "create_s", r->create_s);
 	integer(o, "gpu_bytes", (int64_t)r->gpu_bytes);
+	integer(o, "surfels", (int64_t)r->surfels);
 	stages(object(o, "stages_ms"), r);
 	number(o, "frame_ms", r->frame_ms);
 	number(o, "added_ms", bench_added_ms(report, i));
@@ -116,6 +117,7 @@ struct json_object *bench_report_json(const struct bench_report *report)
 		return NULL;
 	}
 	text(o, "scene", report->scene);
+	integer(o, "triangles", (int64_t)(view->scene->index_count / 3));
 	text(o, "file", report->path);
 	text(o, "renderer", report->renderer);
 	text(o, "camera", view->camera.name);

@@ -3,6 +3,8 @@
 
 #include "base/result.h"
 
+#include "renderer/gi/plan.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -64,15 +66,19 @@ int bench_report_plot(FILE *out, const struct bench_report *report)
 
 void bench_report_fit(FILE *out, const struct bench_report *report)
 {
+	struct gi_facts facts;
+
+	gi_facts_take(&facts, report->view->scene, report->view->file);
+	gi_facts_count(&facts, report->view->scene);
 	for (size_t i = 0; i < report->count; i++) {
 		const struct bench_result *r = &report->results[i];
 		const struct scene_gi *gi = &r->used.gi;
 
 		if (gi->method == SCENE_GI_NONE || !isfinite(r->irradiance.nrmse))
 			continue;
-		fprintf(out, "fit %s %s %.4f lattice %d steps %d spacing %.4f links %d gathers %d probes %d added %.4f\n",
+		fprintf(out, "fit %s %s %.4f lattice %d steps %d spacing %.4f links %d gathers %d probes %d added %.4f expected %.4f\n",
 			report->scene, bench_method_name(gi->method), r->irradiance.nrmse, gi->lattice,
 			gi->steps, (double)gi->spacing_m, gi->links, gi->gathers, gi->probes,
-			bench_added_ms(report, i));
+			bench_added_ms(report, i), gi_plan_error(&facts, gi));
 	}
 }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define COLUMNS 19
+#define COLUMNS 20
 #define CELL 56
 
 struct table {
@@ -14,9 +14,9 @@ struct table {
 };
 
 static const char *const heads[2][COLUMNS] = {
-	{ "", "", "frame", "gi", "gi", "shade", "once", "GPU", "irradiance", "", "", "dark", "indirect",
+	{ "", "", "", "frame", "gi", "gi", "shade", "once", "GPU", "irradiance", "", "", "dark", "indirect",
 	  "picture", "", "", "flicker", "frames to", "work" },
-	{ "method", "settings", "ms", "ms", "p10..p90", "ms", "s", "MiB", "bias", "nRMSE", "p95", "leak",
+	{ "method", "settings", "surfels", "ms", "ms", "p10..p90", "ms", "s", "MiB", "bias", "nRMSE", "p95", "leak",
 	  "nRMSE", "nRMSE", "SSIM", "FLIP", "worst/mean", "10 %/1 %", "stops" },
 };
 /* The first two columns stand to the left. */
@@ -53,27 +53,31 @@ static void fill_cost(char cells[COLUMNS][CELL], const struct bench_result *r)
 {
 	const struct bench_stage *gi = stage_of(r, "gi"), *shade = stage_of(r, "shade");
 
-	put(cells[2], "%.2f", r->frame_ms);
-	put_number(cells[3], gi ? gi->ms.median : (double)NAN, "%.2f");
-	if (gi)
-		put(cells[4], "%.2f..%.2f", gi->ms.p10, gi->ms.p90);
+	if (r->surfels)
+		put(cells[2], "%zu", r->surfels);
 	else
-		put(cells[4], "-");
-	put_number(cells[5], shade ? shade->ms.median : (double)NAN, "%.2f");
-	put(cells[6], "%.1f", r->create_s);
-	put(cells[7], "%.2f", (double)r->gpu_bytes / 1048576);
+		put(cells[2], "-");
+	put(cells[3], "%.2f", r->frame_ms);
+	put_number(cells[4], gi ? gi->ms.median : (double)NAN, "%.2f");
+	if (gi)
+		put(cells[5], "%.2f..%.2f", gi->ms.p10, gi->ms.p90);
+	else
+		put(cells[5], "-");
+	put_number(cells[6], shade ? shade->ms.median : (double)NAN, "%.2f");
+	put(cells[7], "%.1f", r->create_s);
+	put(cells[8], "%.2f", (double)r->gpu_bytes / 1048576);
 }
 
 static void fill_error(char cells[COLUMNS][CELL], const struct bench_result *r)
 {
-	put_number(cells[8], 100 * r->irradiance.bias, "%+.1f %%");
-	put_number(cells[9], 100 * r->irradiance.nrmse, "%.1f %%");
-	put_number(cells[10], 100 * r->irradiance.p95, "%.1f %%");
-	put_number(cells[11], 100 * r->leak, "%.3f %%");
-	put_number(cells[12], 100 * r->indirect.blocks.nrmse, "%.1f %%");
-	put_number(cells[13], 100 * r->total.blocks.nrmse, "%.1f %%");
-	put_number(cells[14], r->total.ssim, "%.4f");
-	put_number(cells[15], r->total.flip, "%.4f");
+	put_number(cells[9], 100 * r->irradiance.bias, "%+.1f %%");
+	put_number(cells[10], 100 * r->irradiance.nrmse, "%.1f %%");
+	put_number(cells[11], 100 * r->irradiance.p95, "%.1f %%");
+	put_number(cells[12], 100 * r->leak, "%.3f %%");
+	put_number(cells[13], 100 * r->indirect.blocks.nrmse, "%.1f %%");
+	put_number(cells[14], 100 * r->total.blocks.nrmse, "%.1f %%");
+	put_number(cells[15], r->total.ssim, "%.4f");
+	put_number(cells[16], r->total.flip, "%.4f");
 }
 
 static void put_frames(char *text, size_t size, size_t frames)
@@ -89,18 +93,18 @@ static void fill_time(char cells[COLUMNS][CELL], const struct bench_result *r)
 	char ten[24], one[24];
 
 	if (isnan(r->flicker.worst)) {
-		put(cells[16], "-");
 		put(cells[17], "-");
+		put(cells[18], "-");
 	} else {
-		put(cells[16], "%.2f/%.3f %%", 100 * r->flicker.worst, 100 * r->flicker.mean);
+		put(cells[17], "%.2f/%.3f %%", 100 * r->flicker.worst, 100 * r->flicker.mean);
 		put_frames(ten, sizeof ten, r->frames_to_10);
 		put_frames(one, sizeof one, r->frames_to_1);
-		put(cells[17], "%s/%s", ten, one);
+		put(cells[18], "%s/%s", ten, one);
 	}
 	if (r->still_frames < 0)
-		put(cells[18], "never");
+		put(cells[19], "never");
 	else
-		put(cells[18], "%d", r->still_frames);
+		put(cells[19], "%d", r->still_frames);
 }
 
 static void fill_row(char cells[COLUMNS][CELL], const struct bench_result *r)
@@ -134,8 +138,9 @@ void bench_report_table(FILE *out, const struct bench_report *report)
 	struct table *table = calloc(1, sizeof *table);
 	char noise[2][CELL];
 
-	fprintf(out, "%s: camera %s, %d x %d pixels, %s\n", report->scene, view->camera.name,
-		view->camera.pixels[0], view->camera.pixels[1], report->renderer);
+	fprintf(out, "%s: %zu triangles, camera %s, %d x %d pixels, %s\n", report->scene,
+		view->scene->index_count / 3, view->camera.name, view->camera.pixels[0],
+		view->camera.pixels[1], report->renderer);
 	put_number(noise[0], 100 * view->truth->noise, "%.2f %%");
 	put_number(noise[1], 100 * view->truth->picture_noise, "%.2f %%");
 	fprintf(out, "truth: %zu points of %d samples, noise %s (taken out of nRMSE); picture of %d samples, noise %s; ",

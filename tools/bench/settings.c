@@ -1,5 +1,6 @@
 #include "tools/bench/settings.h"
 
+#include "base/plain.h"
 #include "base/result.h"
 
 #include <errno.h>
@@ -75,12 +76,12 @@ int bench_method_find(const char *name, size_t len, enum scene_gi_method *out, F
 static void make_label(struct bench_case *c)
 {
 	const struct scene_gi *gi = &c->gi;
-	char spacing[24] = "usual spacing";
+	char spacing[GR_PLAIN_SIZE + 2] = "usual spacing";
 	size_t len;
 
 	c->label[0] = '\0';
 	if (gi->spacing_m > 0)
-		snprintf(spacing, sizeof spacing, "%.3g m", (double)gi->spacing_m);
+		snprintf(spacing, sizeof spacing, "%s m", gr_plain((double)gi->spacing_m, 3).text);
 	switch (gi->method) {
 	case SCENE_GI_NONE: break;
 	case SCENE_GI_LPV:
@@ -95,7 +96,7 @@ static void make_label(struct bench_case *c)
 			 gi->links);
 		break;
 	case SCENE_GI_AUTO:
-		snprintf(c->label, sizeof c->label, "%.3g ms", (double)gi->budget_ms);
+		snprintf(c->label, sizeof c->label, "%s ms", gr_plain((double)gi->budget_ms, 3).text);
 		break;
 	}
 	if (keys_of(gi->method) != surfel_keys)
