@@ -55,12 +55,12 @@ static double grid_cells(const struct gi_facts *facts, int longest)
 	return cells;
 }
 
-/* Over an area, and along edges: that which a spacing must be for so many. */
+/* That gives so many, as far as a spacing can. */
 static double exact_spacing(const struct gi_facts *facts, double count)
 {
-	double edge = facts->edge_surfels_m;
+	double edge = facts->edge_surfels_m, left = fmax(count - facts->piece_surfels, count / 16);
 
-	return (edge + sqrt(edge * edge + 4 * count * SURFEL_DENSITY * facts->area_m2)) / (2 * count);
+	return (edge + sqrt(edge * edge + 4 * left * SURFEL_DENSITY * facts->area_m2)) / (2 * left);
 }
 
 double gi_plan_spacing(const struct gi_facts *facts, const struct scene_gi *gi)
@@ -74,7 +74,8 @@ double gi_plan_surfels(const struct gi_facts *facts, const struct scene_gi *gi)
 {
 	double spacing = gi_plan_spacing(facts, gi);
 
-	return SURFEL_DENSITY * facts->area_m2 / (spacing * spacing) + facts->edge_surfels_m / spacing;
+	return SURFEL_DENSITY * facts->area_m2 / (spacing * spacing) + facts->edge_surfels_m / spacing +
+	       facts->piece_surfels;
 }
 
 static double cost_of(const struct gi_facts *facts, const struct scene_gi *gi,
@@ -292,7 +293,7 @@ bool gi_plan_baked(struct gi_plan *plan, const struct gi_facts *facts, const str
 	const struct gi_costs *c = gi_costs_valid(costs) ? costs : &gi_costs_usual;
 	double spacing = (double)plan->gi.spacing_m, budget = (double)plan->gi.budget_ms;
 	struct gi_facts found = *facts;
-	double flat = SURFEL_DENSITY * facts->area_m2 / (spacing * spacing);
+	double flat = SURFEL_DENSITY * facts->area_m2 / (spacing * spacing) + facts->piece_surfels;
 
 	plan->surfels = (double)surfels;
 	plan->baked = true;

@@ -30,15 +30,17 @@ struct gi_facts {
 	bool environment;    /* light from all around */
 	double mirror_share; /* of the area that is mirror, conductor or highlight more than diffuse, 0..1 */
 	bool moving_geometry; /* things that move; models of this version are loaded without their animations */
-	double edge_surfels_m; /* what edges and small pieces add: surfels times metres of spacing; 0: not looked for */
+	/* What is more than on an area alone, 0 when it was not looked for: */
+	double edge_surfels_m; /* along edges: surfels times metres of spacing */
+	double piece_surfels;  /* of pieces that have one whatever the spacing */
 };
 /* Never fails; a scene without triangles has area 0. */
 void gi_facts_take(struct gi_facts *out, const struct scene *scene, const struct scene_file *file);
 /*
- * Finds edge_surfels_m: surfels are placed once, coarsely (surfel_count.h). Of
- * the scene alone, whatever was baked before: all nodes find the same. Some
- * tenths of a second and what Embree takes for the scene. GR_OK; as
- * surfel_count, facts unchanged.
+ * Finds edge_surfels_m and piece_surfels: surfels are placed twice, coarsely
+ * (surfel_count.h). Of the scene alone, whatever was baked before: all nodes
+ * find the same. Some tenths of a second, and twice what Embree takes for the
+ * scene. GR_OK; as surfel_count, facts unchanged.
  */
 int gi_facts_count(struct gi_facts *facts, const struct scene *scene);
 

@@ -14,19 +14,19 @@
 
 /* Surfels: what no setting takes away, what their spacing and their links do. */
 #define SURFEL_FLOOR 0.01
-#define SURFEL_SPACING 0.76 /* per spacing over the side of a cube of the scene's area */
-#define SURFEL_EDGES 0.087  /* per surfel that edges and pieces add, over those of its area */
+#define SURFEL_SPACING 0.8 /* per spacing over the side of a cube of the scene's area */
+#define SURFEL_EDGES 0.089  /* per surfel that edges and pieces add, over those of its area */
 #define SURFEL_LINKS 0.22   /* over the root of their number */
 /* A lamp that moves: taps are points of a patch, bounces come a gather at a time. */
 #define SURFEL_TAPS 0.02    /* over the root of their number */
 #define SURFEL_LAG 0.01     /* over the number of gathers */
 /* Probes: of a cell as of a spacing; their directions are few. */
-#define PROBE_FLOOR 0.1
-#define PROBE_CELL 0.82
-#define PROBE_EDGES 0.25
+#define PROBE_FLOOR 0.11
+#define PROBE_CELL 0.75
+#define PROBE_EDGES 0.062
 /* Lattices: two bands carry no beams, whatever the cells. */
 #define LATTICE_FLOOR 0.166
-#define LATTICE_COARSE 1.1 /* over the cells along the longest side */
+#define LATTICE_COARSE 1.3 /* over the cells along the longest side */
 #define LATTICE_LAG 0.1 /* over the number of steps, a lamp moving */
 /* What absorbing air would take and does not: of the light that arrives, at most. */
 #define UNTHINNED_MOST 1000.0
@@ -47,7 +47,8 @@ static double side_of(const struct gi_facts *facts)
 /* As surfels a length would stand along edges over those on areas, of one side. */
 static double crowding(const struct gi_facts *facts, double length)
 {
-	return length * facts->edge_surfels_m / (SURFEL_DENSITY * facts->area_m2);
+	return length * (facts->edge_surfels_m + length * facts->piece_surfels) /
+	       (SURFEL_DENSITY * facts->area_m2);
 }
 
 static double surfel_error(const struct gi_facts *facts, const struct scene_gi *gi)
@@ -86,8 +87,8 @@ static double lattice_error(const struct gi_facts *facts, const struct scene_gi 
 void gi_plan_spread(enum scene_gi_method method, double *out_under, double *out_over)
 {
 	static const double spread[][2] = {
-		[SCENE_GI_NONE] = { 1, 1 },	  [SCENE_GI_LPV] = { 1.5, 2.5 },
-		[SCENE_GI_SURFELS] = { 2.7, 2.3 }, [SCENE_GI_PROBES] = { 2, 1.6 },
+		[SCENE_GI_NONE] = { 1, 1 },	  [SCENE_GI_LPV] = { 1.6, 2.4 },
+		[SCENE_GI_SURFELS] = { 2.9, 2.2 }, [SCENE_GI_PROBES] = { 2, 2 },
 		[SCENE_GI_AUTO] = { 1, 1 },
 	};
 

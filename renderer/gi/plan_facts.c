@@ -69,23 +69,38 @@ void gi_facts_take(struct gi_facts *out, const struct scene *scene, const struct
 	}
 }
 
-/* Surfels that a flat scene of that area would have when they are counted. */
-#define COUNT_FLAT 2000
+/* Surfels that the areas alone would have when they are counted: far enough apart to tell. */
+static const double count_flat[2] = { 500, 2000 };
 
+/* Two digits: what another processor's rounding does to a few rays must not choose. */
+static double rounded(double v)
+{
+	double power = v > 0 ? pow(10, floor(log10(v)) - 1) : 1;
+
+	return v > 0 ? round(v / power) * power : 0;
+}
+
+/* more[i] = edge / spacing[i] + piece, neither below zero. */
 int gi_facts_count(struct gi_facts *facts, const struct scene *scene)
 {
-	double spacing = sqrt(SURFEL_DENSITY * facts->area_m2 / COUNT_FLAT), edge, power;
-	size_t count;
-	int result;
+	double inverse[2], more[2], edge, piece;
 
-	if (!isfinite(spacing) || !(spacing > 0))
-		return GR_ERR_RANGE;
-	result = surfel_count(scene, (float)spacing, 0, &count);
-	if (result != GR_OK)
-		return result;
-	edge = fmax(0, ((double)count - COUNT_FLAT) * spacing);
-	/* two digits: what rounding does to a few rays on another processor must not choose */
-	power = edge > 0 ? pow(10, floor(log10(edge)) - 1) : 1;
-	facts->edge_surfels_m = round(edge / power) * power;
+	for (int i = 0; i < 2; i++) {
+		double spacing = sqrt(SURFEL_DENSITY * facts->area_m2 / count_flat[i]);
+		size_t count;
+		int result = GR_ERR_RANGE;
+
+		if (isfinite(spacing) && spacing > 0)
+			result = surfel_count(scene, (float)spacing, 0, &count);
+		if (result != GR_OK)
+			return result;
+		inverse[i] = 1 / spacing;
+		more[i] = fmax(0, (double)count - count_flat[i]);
+	}
+	edge = fmax(0, (more[1] - more[0]) / (inverse[1] - inverse[0]));
+	edge = fmin(edge, more[1] / inverse[1]);
+	piece = more[1] - edge * inverse[1];
+	facts->edge_surfels_m = rounded(edge);
+	facts->piece_surfels = rounded(piece);
 	return GR_OK;
 }

@@ -3,6 +3,9 @@
 
 #include "base/result.h"
 #include "renderer/gi/plan.h"
+#include "renderer/gi/surfel_bake.h"
+#include "renderer/scene/import.h"
+#include "tests/unit/shared.h"
 
 #include <math.h>
 
@@ -77,6 +80,56 @@ static void nothing_to_light(void **state)
 	plan = plan_for(&facts, 8);
 	assert_int_equal(plan.gi.method, SCENE_GI_NONE);
 	assert_non_null(strstr(plan.why, "no surface"));
+}
+
+/* Surfels that are expected of a model after they were counted coarsely, and that are there. */
+static void counted(const char *path, const char *name, const float *spacings, size_t count)
+{
+	const struct import_options options = { .scale = 1, .emission_scale = 1 };
+	const struct scene_file file = { 0 };
+	struct gr_diag diag = { 0 };
+	struct gi_facts facts;
+	struct scene *scene;
+
+	assert_int_equal(import_model(path, &options, &scene, &diag), GR_OK);
+	gi_facts_take(&facts, scene, &file);
+	assert_int_equal(gi_facts_count(&facts, scene), GR_OK);
+	for (size_t i = 0; i < count; i++) {
+		struct surfel_bake_params params = SURFEL_BAKE_PARAMS;
+		struct scene_gi gi = wish(8);
+		struct surfel_set *set;
+		double expected;
+
+		gi.spacing_m = params.spacing_m = spacings[i];
+		params.links = 16;
+		params.probes = 0;
+		assert_int_equal(surfel_bake(&set, scene, NULL, &params, &diag), GR_OK);
+		expected = gi_plan_surfels(&facts, &gi);
+		printf("# %s, %g m apart: %.0f by area alone, %.0f expected, %zu baked\n", name,
+		       (double)spacings[i], 0.7 * facts.area_m2 / pow((double)spacings[i], 2), expected,
+		       set->count);
+		/* well within what a plan's cost may be off before it warns */
+		assert_true(fabs(expected / (double)set->count - 1) < 0.04);
+		surfel_set_destroy(&set);
+	}
+	gr_diag_finish(&diag);
+	scene_destroy(&scene);
+}
+
+static void counts_are_near(void **state)
+{
+	const float grotto[] = { 0.5f, 0.34f, 0.25f }, box[] = { 0.4f, 0.2f };
+	const float sponza[] = { 1.6f, 0.8f, 0.4f };
+	const char *source = getenv("srcdir");
+	char path[1024];
+
+	(void)state;
+	snprintf(path, sizeof path, "%s/scenes/grotto.gltf", source ? source : ".");
+	counted(path, "grotto", grotto, 3);
+	snprintf(path, sizeof path, "%s/scenes/box.gltf", source ? source : ".");
+	counted(path, "box", box, 2);
+	if (getenv("GROTTO_LONG") && shared_file("reference/scenes/models/sponza_part.glb", path))
+		counted(path, "Sponza", sponza, 3);
 }
 
 /* What is told is what a person can read, and what fits where it goes. */
@@ -244,6 +297,7 @@ static struct gi_facts any_facts(struct unit_random *r)
 	facts.mirror_share = unit_random_u32(r) % 2 ? 0 : unit_random_range(r, 0, 1);
 	facts.moving_geometry = unit_random_u32(r) % 5 == 0;
 	facts.absorption_per_m = unit_random_u32(r) % 3 ? 0 : pow(10, unit_random_range(r, -3, 1));
+	facts.piece_surfels = unit_random_u32(r) % 2 ? 0 : pow(10, unit_random_range(r, 0, 6));
 	facts.edge_surfels_m = unit_random_u32(r) % 2 ? 0 : size * pow(10, unit_random_range(r, 0, 4));
 	return facts;
 }
@@ -328,6 +382,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(method_follows_the_scene),
 		cmocka_unit_test(nothing_to_light),
+		cmocka_unit_test(counts_are_near),
 		cmocka_unit_test(words),
 		cmocka_unit_test(edges_count),
 		cmocka_unit_test(as_baked),
