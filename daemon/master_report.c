@@ -4,6 +4,7 @@
 #include "base/result.h"
 #include "daemon/control.h"
 #include "daemon/json.h"
+#include "renderer/gi/plan.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -17,6 +18,27 @@ static void write_histogram(struct json *json, const char *key, const struct his
 	json_f64(json, "p99", histogram_percentile(histogram, 0.99));
 	json_i64(json, "max", histogram->max_us);
 	json_close(json, '}');
+}
+
+/* How a node that has joined computes light, in words, and what it expects of that. */
+static void write_light(struct json *json, const struct scene_file *file,
+			const struct fdp_peer_status *peer)
+{
+	struct scene_gi gi = file->gi;
+	char text[GI_PLAN_TEXT];
+
+	if (peer->state == FDP_PEER_ABSENT || peer->state == FDP_PEER_DEAD)
+		return;
+	if (peer->plan && !gi_plan_decode(peer->plan, &gi))
+		snprintf(text, sizeof text, "unknown");
+	else
+		gi_plan_settings(text, sizeof text, &gi);
+	json_string(json, "light", text);
+	if (!peer->plan)
+		return;
+	json_hash(json, "light_plan", peer->plan);
+	json_f64(json, "light_ms", peer->plan_cost * 0.01);
+	json_f64(json, "light_error", peer->plan_error * 0.0001);
 }
 
 static void write_node(struct json *json, const struct master *m, size_t i, int64_t now_ns)
@@ -40,8 +62,7 @@ static void write_node(struct json *json, const struct master *m, size_t i, int6
 	json_u64(json, "slices", peer.slices);
 	json_u64(json, "slices_late", peer.slices_late);
 	json_u64(json, "slice_bytes", peer.slice_bytes);
-	json_string(json, "light", peer.light);
-	json_hash(json, "light_plan", peer.plan);
+	write_light(json, m->params.scene, &peer);
 	if (peer.last_heard_ns > 0)
 		json_f64(json, "heard_ms_ago", (double)(now_ns - peer.last_heard_ns) * 1e-6);
 	json_close(json, '}');

@@ -317,7 +317,8 @@ static int create_protocol(struct node *n)
 		.datagram_max = net_datagram_max(&layout->network),
 		.silence_ns = SILENCE_NS,
 		.plan = n->params.plan,
-		.light = n->params.light,
+		.plan_cost = n->params.plan_cost,
+		.plan_error = n->params.plan_error,
 		.share_bytes = n->share.room,
 	};
 	struct fdp_node_ops ops = { send_datagram, on_event, n };

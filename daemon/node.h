@@ -31,7 +31,7 @@ struct node_params {
 	const struct scene_file *scene_file;
 	struct fdp_contents contents;
 	uint64_t plan; /* of gi.method = "auto" (renderer/gi/plan.h); 0: the scene file says it */
-	const char *light; /* in words, for the room's status; needed by node_create alone */
+	uint16_t plan_cost, plan_error; /* what is expected of it, as struct fdp_join has it */
 	uint8_t key[FDP_KEY_BYTES];
 	bool window;    /* the target is a window, which must be answered */
 	bool once;      /* end when the master ends or refuses */

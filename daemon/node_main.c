@@ -13,6 +13,7 @@
 #include "daemon/room_files.h"
 #include "renderer/gi/plan.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -170,7 +171,18 @@ static void take_priority(const struct opened *o, int priority)
 	priority_take(priority);
 }
 
-_Static_assert(GI_PLAN_TEXT == FDP_LIGHT_BYTES, "a plan in words must fit into a JOIN");
+/* A JOIN's hundredths; what is more than they hold is said to be that. */
+static uint16_t hundredths(double value)
+{
+	return (uint16_t)fmin(fmax(round(100 * value), 0), UINT16_MAX);
+}
+
+static void fill_plan(struct node_params *params, const struct gi_plan *plan)
+{
+	params->plan = plan->code;
+	params->plan_cost = hundredths(plan->update_ms);
+	params->plan_error = hundredths(100 * plan->error);
+}
 
 static int open_all(struct opened *o, const struct node_options *options)
 {
@@ -208,9 +220,8 @@ static int open_all(struct opened *o, const struct node_options *options)
 		return r;
 	params.contents = room_files_contents(&o->files);
 	memcpy(params.key, o->files.key, sizeof params.key);
-	params.light = renderer_light_text(o->renderer);
 	if (renderer_plan(o->renderer))
-		params.plan = renderer_plan(o->renderer)->hash;
+		fill_plan(&params, renderer_plan(o->renderer));
 	return node_create(&o->node, o->loop, o->net, o->target, o->renderer, o->pictures, &params);
 }
 

@@ -130,6 +130,8 @@ struct fdp_peer_status {
 	uint64_t swapped_frame;
 	uint32_t render_us;        /* GPU and CPU time the node says it took */
 	uint64_t slices, slices_late, slice_bytes; /* of the light, from it, whole; after SWAP */
+	uint64_t plan;                             /* of its light, see struct fdp_join */
+	uint16_t plan_cost, plan_error;            /* as there */
 };
 
 struct fdp_master;

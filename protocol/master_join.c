@@ -84,14 +84,16 @@ static void admit(struct fdp_master *m, unsigned node, const struct fdp_header *
 
 	count_out(m, node, "joins anew", now_ns);
 	peer->joins++;
-	peer->plan = join->plan;
 	memcpy(peer->challenge, join->challenge, sizeof peer->challenge);
 	fdp_key_to_master(m->params.key, m->params.session, node, m->nonce, join->nonce,
 			  join->challenge, m->node_keys[node]);
 	m->gate.keyed |= UINT64_C(1) << node;
 	fdp_replay_start(&peer->window, first - 1);
 	fdp_replay_take(&peer->window, header->sequence);
-	peer->status = (struct fdp_peer_status){ .last_heard_ns = now_ns };
+	peer->status = (struct fdp_peer_status){
+		.last_heard_ns = now_ns, .plan = join->plan,
+		.plan_cost = join->plan_cost, .plan_error = join->plan_error,
+	};
 	peer->synced = peer->wants_snapshot = false;
 	peer->missed_row = 0;
 	peer->mismatch_frame = 0;

@@ -34,7 +34,6 @@ struct fdp_peer {
 	struct fdp_peer_status status;
 	struct fdp_replay window;
 	uint64_t joins; /* incarnations taken in this session */
-	uint64_t plan; /* of its light, see struct fdp_join */
 	uint8_t challenge[FDP_NONCE_BYTES]; /* of the incarnation that is in */
 	bool synced;         /* has acknowledged a snapshot, waits for the next frame */
 	bool wants_snapshot; /* holds a wrong state, or cannot use the deltas */

@@ -63,11 +63,11 @@ static bool plans_differ(const struct fdp_master *m, const struct fdp_join *join
 	for (size_t i = 0; i < m->params.node_count; i++) {
 		const struct fdp_peer *peer = &m->peers[i];
 
-		if (i == join->index || !fdp_peer_present(peer->state) || peer->plan == join->plan)
+		if (i == join->index || !fdp_peer_present(peer->state) || peer->status.plan == join->plan)
 			continue;
 		snprintf(reason, FDP_REASON_MAX,
 			 "another plan of the light: the node's %016llx, '%s' has %016llx; name gi.method and its settings in the scene file",
-			 (unsigned long long)join->plan, m->names[i], (unsigned long long)peer->plan);
+			 (unsigned long long)join->plan, m->names[i], (unsigned long long)peer->status.plan);
 		return true;
 	}
 	return false;

@@ -38,7 +38,8 @@ size_t fdp_join_encode(const struct fdp_join *m, uint8_t *bytes, size_t size)
 
 	gr_write_u16(&w, m->version);
 	gr_write_u16(&w, m->index);
-	gr_write_u32(&w, 0);
+	gr_write_u16(&w, m->plan_cost);
+	gr_write_u16(&w, m->plan_error);
 	gr_write_bytes(&w, m->nonce, sizeof m->nonce);
 	gr_write_bytes(&w, m->challenge, sizeof m->challenge);
 	gr_write_bytes(&w, m->layout_hash, sizeof m->layout_hash);
@@ -73,13 +74,13 @@ static int read_items(struct gr_reader *r, struct fdp_join *out)
 int fdp_join_decode(const uint8_t *bytes, size_t len, struct fdp_join *out)
 {
 	struct gr_reader r = gr_reader(bytes, len);
-	uint32_t reserved;
 	uint8_t any = 0;
 	size_t name_len;
 
 	out->version = gr_read_u16(&r);
 	out->index = gr_read_u16(&r);
-	reserved = gr_read_u32(&r);
+	out->plan_cost = gr_read_u16(&r);
+	out->plan_error = gr_read_u16(&r);
 	read_into(&r, out->nonce, sizeof out->nonce);
 	read_into(&r, out->challenge, sizeof out->challenge);
 	read_into(&r, out->layout_hash, sizeof out->layout_hash);
@@ -90,7 +91,7 @@ int fdp_join_decode(const uint8_t *bytes, size_t len, struct fdp_join *out)
 	name_len = strnlen(out->name, sizeof out->name);
 	for (size_t i = name_len; i < sizeof out->name; i++)
 		any |= (uint8_t)out->name[i];
-	if (any || reserved || !name_len || name_len == sizeof out->name ||
+	if (any || !name_len || name_len == sizeof out->name ||
 	    !printable(out->name, name_len))
 		return GR_ERR_FORMAT;
 	if (out->version == FDP_VERSION)

@@ -24,6 +24,8 @@ struct fdp_join {
 	uint64_t table_hash; /* of the parameter table */
 	char name[FDP_NAME_BYTES];
 	uint64_t plan; /* of how this node computes the light, where that is not the scene file's to say; 0: it is */
+	/* What it expects of that, hundredths: of a millisecond a frame, of a percent. UINT16_MAX: that or more. */
+	uint16_t plan_cost, plan_error;
 	/*
 	 * The parts of layout and scene, the beginnings of their digests in this
 	 * order: fdp_items_width bytes each. All 0 in a JOIN of another version.

@@ -151,6 +151,8 @@ static void send_join(struct fdp_node *n, uint64_t session, int64_t now_ns)
 		.index = n->params.index,
 		.table_hash = param_table_hash(),
 		.plan = n->params.plan,
+		.plan_cost = n->params.plan_cost,
+		.plan_error = n->params.plan_error,
 		.layout_items = (uint8_t)n->params.contents.layout_count,
 		.scene_items = (uint8_t)n->params.contents.scene_count,
 	};

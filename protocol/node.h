@@ -44,6 +44,7 @@ struct fdp_node_params {
 	uint8_t key[FDP_KEY_BYTES];
 	struct fdp_contents contents;
 	uint64_t plan; /* as struct fdp_join's; nodes of one room must have one */
+	uint16_t plan_cost, plan_error; /* as there */
 	size_t datagram_max;
 	int64_t join_ns;    /* between two requests to join; 0: 200 ms */
 	int64_t silence_ns; /* master counts as lost after this; 0: 2 s */

@@ -9,7 +9,6 @@
 #include "renderer/scene/environment.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 static int check_params(const struct renderer_params *params, const struct target *target)
@@ -62,7 +61,8 @@ static void settle_plan(struct renderer *r)
 	char settings[160];
 
 	if (gi_plan_baked(&r->plan, &r->facts, &r->costs, r->surfels, &right)) {
-		gr_info("light, with the surfels that there are: %s", r->plan.text);
+		gr_info("light, with %zu surfels as baked: %s ms a frame while it changes", r->surfels,
+			gr_plain(r->plan.update_ms, 3).text);
 		return;
 	}
 	gi_plan_settings(settings, sizeof settings, &right.gi);
@@ -120,10 +120,6 @@ static int create_light(struct renderer *r, const struct emissive_patches *patch
 	if (result == GR_OK &&
 	    (r->choice.method == SCENE_GI_SURFELS || r->choice.method == SCENE_GI_PROBES))
 		result = create_surfels(r, r->choice.method == SCENE_GI_PROBES);
-	if (r->is_planned)
-		snprintf(r->light_text, sizeof r->light_text, "%s", r->plan.text);
-	else
-		gi_plan_text(r->light_text, &r->file->gi, r->surfels);
 	return result;
 }
 

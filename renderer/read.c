@@ -76,11 +76,6 @@ const struct gi_plan *renderer_plan(const struct renderer *renderer)
 	return renderer->is_planned ? &renderer->plan : NULL;
 }
 
-const char *renderer_light_text(const struct renderer *renderer)
-{
-	return renderer->light_text;
-}
-
 size_t renderer_surfels(const struct renderer *renderer)
 {
 	return renderer->surfels;

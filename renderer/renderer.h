@@ -91,12 +91,6 @@ int renderer_read_irradiance(struct renderer *renderer, const struct renderer_po
 struct gi_plan;
 /* What was chosen for gi.method = "auto" (renderer/gi/plan.h); NULL: the scene file chose. */
 const struct gi_plan *renderer_plan(const struct renderer *renderer);
-/*
- * Method and settings of indirect light in short, for the room's status: with
- * what they are expected to cost and to err where they were planned. Printable
- * ASCII, shorter than GI_PLAN_TEXT.
- */
-const char *renderer_light_text(const struct renderer *renderer);
 /* Surfels that light the scene; 0: another method. */
 size_t renderer_surfels(const struct renderer *renderer);
 struct gi_stats;

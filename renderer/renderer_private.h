@@ -39,7 +39,6 @@ struct renderer {
 	struct gi_facts facts; /* that it was made from */
 	struct gi_costs costs;
 	size_t surfels;              /* 0: none */
-	char light_text[GI_PLAN_TEXT];
 	struct scene_file planned;   /* the file with the plan's gi; all else borrowed */
 	int file_steps;              /* propagation steps that the file says */
 	struct gl_mesh *mesh;

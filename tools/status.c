@@ -1,5 +1,6 @@
 /* grotto status: asks a running master how its room is. */
 #include "base/clock.h"
+#include "base/plain.h"
 #include "base/result.h"
 #include "config/layout.h"
 #include "tools/ask.h"
@@ -45,38 +46,46 @@ static void print_nodes(struct json_object *status)
 	}
 }
 
-/* "" where it is not said. */
-static const char *light_of(struct json_object *nodes, size_t i)
-{
-	struct json_object *light = report_member(json_object_array_get_idx(nodes, i), "light");
+#define LIGHT_MAX 256
 
-	return json_object_is_type(light, json_type_string) ? json_object_get_string(light) : "";
+/* How a node computes light, and what it expects where it chose itself; "" where it is not said. */
+static void light_of(struct json_object *node, char text[LIGHT_MAX])
+{
+	struct json_object *light = report_member(node, "light");
+	size_t len;
+
+	snprintf(text, LIGHT_MAX, "%s",
+		 json_object_is_type(light, json_type_string) ? json_object_get_string(light) : "");
+	len = strlen(text);
+	if (report_member(node, "light_plan"))
+		snprintf(text + len, LIGHT_MAX - len, "; expected %s ms a frame, error %s",
+			 gr_plain(report_number(node, "light_ms"), 3).text,
+			 gr_plain_percent(report_number(node, "light_error")).text);
 }
 
-/* How light is computed: one line when all nodes say the same, else one for each. */
+/* One line when all nodes say the same, else one for each. */
 static void print_light(struct json_object *status)
 {
 	struct json_object *nodes = report_member(status, "nodes");
 	size_t count = json_object_is_type(nodes, json_type_array)
 			       ? json_object_array_length(nodes) : 0;
-	const char *first = NULL;
+	char first[LIGHT_MAX] = "", text[LIGHT_MAX];
 	bool alike = true;
 
 	for (size_t i = 0; i < count; i++) {
-		const char *light = light_of(nodes, i);
-
-		if (!light[0])
-			continue;
-		alike = alike && (!first || !strcmp(first, light));
-		first = first ? first : light;
+		light_of(json_object_array_get_idx(nodes, i), text);
+		alike = alike && (!text[0] || !first[0] || !strcmp(first, text));
+		if (!first[0])
+			strcpy(first, text);
 	}
-	if (first && alike)
+	if (first[0] && alike)
 		printf("light: %s\n", first);
 	for (size_t i = 0; i < count && !alike; i++) {
-		if (light_of(nodes, i)[0])
-			printf("light of %s: %s\n",
-			       report_text(json_object_array_get_idx(nodes, i), "name"),
-			       light_of(nodes, i));
+		struct json_object *node = json_object_array_get_idx(nodes, i);
+
+		light_of(node, text);
+		if (text[0])
+			printf("light of %s: %s\n", report_text(node, "name"), text);
 	}
 }
 

@@ -4,7 +4,6 @@
 #include "renderer/gi/surfel_bake.h"
 
 #include <math.h>
-#include <sodium.h>
 #include <string.h>
 
 /* Rays that baking may take: about half a minute on two cores. */
@@ -105,37 +104,6 @@ double gi_plan_cost_ms(const struct gi_facts *facts, const struct scene_gi *gi,
 		       const struct gi_costs *costs)
 {
 	return cost_of(facts, gi, costs, gi_plan_surfels(facts, gi));
-}
-
-uint64_t gi_plan_hash(const struct scene_gi *gi)
-{
-	static const unsigned char key[crypto_shorthash_KEYBYTES] = "grotto gi plan";
-	unsigned char digest[crypto_shorthash_BYTES];
-	int32_t shape[8] = { (int32_t)gi->method };
-	uint64_t hash = 0;
-
-	if (gi->method == SCENE_GI_LPV) {
-		const int32_t of[] = { (int32_t)gi->lpv_mode, gi->lattice, gi->steps, gi->rsm_pixels,
-				       gi->link_rays };
-
-		memcpy(shape + 1, of, sizeof of);
-	} else if (gi->method != SCENE_GI_NONE) {
-		const int32_t of[] = { 0, gi->links, gi->gathers, gi->taps, gi->probes };
-
-		memcpy(shape + 1, of, sizeof of);
-		memcpy(shape + 1, &gi->spacing_m, sizeof gi->spacing_m);
-	}
-	/* as bytes in one order on every machine */
-	for (size_t i = 0; i < COUNT(shape); i++) {
-		uint32_t bits = (uint32_t)shape[i];
-
-		for (int b = 0; b < 4; b++)
-			((unsigned char *)&shape[i])[b] = (unsigned char)(bits >> (8 * b));
-	}
-	crypto_shorthash(digest, (const unsigned char *)shape, sizeof shape, key);
-	for (int i = 0; i < 8; i++)
-		hash |= (uint64_t)digest[i] << (8 * i);
-	return hash ? hash : 1; /* 0 says: no plan */
 }
 
 struct search {
@@ -252,7 +220,7 @@ static void complete(struct gi_plan *plan, const struct gi_facts *facts)
 	gi_plan_spread(plan->gi.method, &under, &over);
 	plan->error_least = plan->error / under;
 	plan->error_most = plan->error * over;
-	plan->hash = gi_plan_hash(&plan->gi);
+	plan->code = gi_plan_code(&plan->gi);
 	gi_plan_say(plan, facts);
 }
 

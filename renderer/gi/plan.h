@@ -60,7 +60,7 @@ bool gi_costs_valid(const struct gi_costs *costs);
 /* Errors closer than this factor are alike. */
 #define GI_PLAN_ALIKE 1.05
 
-#define GI_PLAN_TEXT 96 /* with the NUL; printable ASCII */
+#define GI_PLAN_TEXT 160 /* room for settings in words */
 struct gi_plan {
 	struct scene_gi gi; /* never SCENE_GI_AUTO; its budget_ms as wanted */
 	double update_ms;   /* expected, of a frame in which the light changes; 0 when steady */
@@ -69,9 +69,8 @@ struct gi_plan {
 	double surfels;     /* expected, or as baked; 0: none */
 	bool baked;         /* surfels is what was baked */
 	bool within;        /* the budget; false: this is the least that there is */
-	uint64_t hash;      /* of what shapes the light: equal exactly when walls would agree */
+	uint64_t code;      /* of what shapes the light: equal exactly when walls would agree; never 0 */
 	char why[720];      /* for the log */
-	char text[GI_PLAN_TEXT]; /* in short, for the room's status */
 };
 /*
  * wanted: what the scene file says; its budget, and the settings that are no
@@ -91,8 +90,6 @@ bool gi_plan_baked(struct gi_plan *plan, const struct gi_facts *facts, const str
 		   size_t surfels, struct gi_plan *out_right);
 /* Settings in words, as "surfels 0.2 m apart, 256 links, 1 gather, 16 taps". */
 void gi_plan_settings(char *text, size_t size, const struct scene_gi *gi);
-/* The short text of settings that no plan was made for; surfels 0: none. */
-void gi_plan_text(char text[GI_PLAN_TEXT], const struct scene_gi *gi, size_t surfels);
 /* Whether there is anything to choose by cost. */
 bool gi_plan_needs_costs(const struct gi_facts *facts);
 /* What settings cost and how they err, by the same models. ms of a frame; a share. */
@@ -105,7 +102,15 @@ void gi_plan_spread(enum scene_gi_method method, double *out_under, double *out_
 double gi_plan_unthinned(const struct gi_facts *facts);
 /* About how many surfels settings give. */
 double gi_plan_surfels(const struct gi_facts *facts, const struct scene_gi *gi);
-/* Of what shapes the light in settings, whether planned or written in a file. */
-uint64_t gi_plan_hash(const struct scene_gi *gi);
+/*
+ * What shapes the light in a plan's settings, as one number that nodes compare
+ * and tell. From the lowest bit: 3 method; then for lpv 1 mode, 8 lattice,
+ * 8 steps, 12 rsm_pixels, 13 link_rays; for surfels and probes 7 two digits of
+ * the spacing in metres, 5 their power of ten plus 16 (both 0: usual), 13 links,
+ * 5 gathers, 7 taps, 7 probes (0 without).
+ */
+uint64_t gi_plan_code(const struct scene_gi *gi);
+/* The settings again; others of *out stay. False, *out unchanged: what no plan would be. From outside. */
+bool gi_plan_decode(uint64_t code, struct scene_gi *out);
 
 #endif

@@ -10,7 +10,7 @@
 bool gi_plan_has_light(const struct gi_facts *facts);
 /* Metres; the baker's own where the settings name none. */
 double gi_plan_spacing(const struct gi_facts *facts, const struct scene_gi *gi);
-/* why and text, from all else. */
+/* why, from all else. */
 void gi_plan_say(struct gi_plan *plan, const struct gi_facts *facts);
 
 #endif

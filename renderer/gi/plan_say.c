@@ -65,45 +65,6 @@ static void put_error(char *text, size_t size, const struct gi_plan *plan)
 		 gr_plain_percent(plan->error_least).text, gr_plain_percent(plan->error_most).text);
 }
 
-void gi_plan_text(char text[GI_PLAN_TEXT], const struct scene_gi *gi, size_t surfels)
-{
-	char spacing[48] = "";
-
-	switch (gi->method) {
-	case SCENE_GI_LPV:
-		snprintf(text, GI_PLAN_TEXT, "lattice, %d cells, %d steps", gi->lattice, gi->steps);
-		break;
-	case SCENE_GI_SURFELS:
-	case SCENE_GI_PROBES:
-		if (gi->spacing_m > 0)
-			snprintf(spacing, sizeof spacing, " %s m apart", gr_plain((double)gi->spacing_m, 3).text);
-		snprintf(text, GI_PLAN_TEXT, "%s%s, %zu x %d links",
-			 gi->method == SCENE_GI_PROBES ? "probes, surfels" : "surfels", spacing, surfels,
-			 gi->links);
-		break;
-	case SCENE_GI_NONE:
-	case SCENE_GI_AUTO:
-		snprintf(text, GI_PLAN_TEXT, "no indirect light");
-		break;
-	}
-}
-
-/* The settings, then what is expected; what would not fit is left out whole. */
-static void put_text(struct gi_plan *plan)
-{
-	size_t len;
-	char error[112];
-
-	gi_plan_text(plan->text, &plan->gi, (size_t)plan->surfels);
-	if (plan->gi.method == SCENE_GI_NONE)
-		return;
-	len = strlen(plan->text);
-	put_error(error, sizeof error, plan);
-	if ((size_t)snprintf(plan->text + len, GI_PLAN_TEXT - len, ": %s ms, error %s",
-			     gr_plain(plan->update_ms, 3).text, error) >= GI_PLAN_TEXT - len)
-		plan->text[len] = 0;
-}
-
 void gi_plan_say(struct gi_plan *plan, const struct gi_facts *facts)
 {
 	char settings[160], reason[200], error[112], count[48] = "", over[96] = "";
@@ -111,7 +72,6 @@ void gi_plan_say(struct gi_plan *plan, const struct gi_facts *facts)
 	gi_plan_settings(settings, sizeof settings, &plan->gi);
 	put_reason(reason, sizeof reason, facts, plan);
 	put_error(error, sizeof error, plan);
-	put_text(plan);
 	if (plan->gi.method == SCENE_GI_NONE) {
 		snprintf(plan->why, sizeof plan->why, "none: %s", reason);
 		return;

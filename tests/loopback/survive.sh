@@ -8,9 +8,9 @@ need_gl
 start_master --frame-clock --wait-all
 for n in $nodes; do start_node $n; done
 wait_for 120 frame_is_past 20
-grep -q '"light":"lattice, 8 cells, 4 steps"' "$dir/status.json" || fail "the status does not say how light is computed"
+grep -q '"light":"a lattice of 8 cells, 4 steps"' "$dir/status.json" || fail "the status does not say how light is computed"
 "$builddir/tools/grotto" status --socket "$dir/control" > "$dir/status.log" 2>&1
-says status "^light: lattice, 8 cells, 4 steps$" || fail "grotto status does not say how light is computed"
+says status "^light: a lattice of 8 cells, 4 steps$" || fail "grotto status does not say how light is computed"
 
 kill -9 "$pid_left"
 wait "$pid_left" 2>/dev/null

@@ -764,6 +764,7 @@ static void refusals(void **state)
 /* Who is first in the room says how light is computed; of two that differ one is told why not. */
 static void other_plan(void **state)
 {
+	struct fdp_peer_status peer;
 	struct sim s;
 	unsigned in;
 
@@ -772,6 +773,10 @@ static void other_plan(void **state)
 	sim_start_all(&s);
 	s.nodes[0].node->params.plan = 0x1234;
 	s.nodes[1].node->params.plan = 0x1235;
+	for (unsigned i = 0; i < 2; i++) {
+		s.nodes[i].node->params.plan_cost = 2180;
+		s.nodes[i].node->params.plan_error = 510;
+	}
 	sim_run_ns(&s, 1500 * SIM_MS);
 	in = s.nodes[0].node->status == FDP_NODE_ASKING;
 	assert_int_not_equal(s.nodes[in].node->status, FDP_NODE_ASKING);
@@ -780,6 +785,10 @@ static void other_plan(void **state)
 	assert_non_null(strstr(s.nodes[!in].reason, "another plan of the light"));
 	assert_non_null(strstr(s.nodes[!in].reason, "0000000000001234"));
 	assert_non_null(strstr(s.nodes[!in].reason, "0000000000001235"));
+	fdp_master_peer(s.master, in, &peer);
+	assert_int_equal(peer.plan, s.nodes[in].node->params.plan);
+	assert_int_equal(peer.plan_cost, 2180);
+	assert_int_equal(peer.plan_error, 510);
 	/* alike they both come in */
 	s.nodes[!in].node->params.plan = s.nodes[in].node->params.plan;
 	sim_run_ns(&s, 1500 * SIM_MS);
