@@ -1,0 +1,29 @@
+# tests of record: links base/, protocol/ and record/ alone
+check_PROGRAMS += tests/unit/test_record
+TESTS += tests/unit/test_record
+tests_unit_test_record_SOURCES = tests/unit/test_record.c tests/unit/record_make.c \
+	tests/unit/record_make.h tests/unit/unit.h
+tests_unit_test_record_CFLAGS = $(TEST_CFLAGS) -D_GNU_SOURCE
+tests_unit_test_record_LDADD = $(RECORD_LIBS) $(CMOCKA_LIBS)
+
+check_PROGRAMS += tests/loopback/walk
+tests_loopback_walk_SOURCES = tests/loopback/walk.c
+tests_loopback_walk_CFLAGS = $(TEST_CFLAGS)
+tests_loopback_walk_LDADD = daemon/libgdaemon.a $(TRACKING_LIBS) $(CONFIG_LIBS) $(RECORD_LIBS)
+dist_check_SCRIPTS += tests/loopback/record.sh
+TESTS += tests/loopback/record.sh
+
+EXTRA_DIST += \
+	tests/fuzz/fuzz_record.c \
+	tests/fuzz/corpus/record/damaged \
+	tests/fuzz/corpus/record/far-apart \
+	tests/fuzz/corpus/record/short \
+	tests/fuzz/corpus/record/two
+
+if FUZZERS
+noinst_PROGRAMS += tests/fuzz/fuzz_record
+tests_fuzz_fuzz_record_SOURCES = tests/fuzz/fuzz_record.c
+tests_fuzz_fuzz_record_CFLAGS = $(TEST_CFLAGS)
+tests_fuzz_fuzz_record_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_record_LDADD = $(RECORD_LIBS)
+endif
