@@ -81,6 +81,7 @@ struct fdp_master_params {
 	size_t share_bytes;
 };
 
+struct fdp_report;
 struct fdp_master_ops {
 	/*
 	 * Neither may call back into the master.
@@ -91,6 +92,11 @@ struct fdp_master_ops {
 	 */
 	void (*send)(void *ctx, int to, const uint8_t *bytes, size_t len);
 	void (*event)(void *ctx, const struct fdp_master_event *event);
+	/*
+	 * An authentic ACK, READY or SWAPPED of a node that is in (protocol/message.h),
+	 * repeated ones too, before anything is made of it. May be NULL.
+	 */
+	void (*report)(void *ctx, unsigned node, unsigned kind, const struct fdp_report *report);
 	void *ctx;
 };
 

@@ -110,6 +110,8 @@ static enum fdp_verdict dispatch(struct fdp_master *m, const struct fdp_header *
 	case FDP_SWAPPED:
 		if (fdp_report_decode(body, h->payload_len, &report) || report.frame > m->frame)
 			return FDP_BAD_FORMAT;
+		if (m->ops.report)
+			m->ops.report(m->ops.ctx, h->sender, h->kind, &report);
 		on_report(m, h->sender, h->kind, &report, now_ns);
 		return FDP_GOOD;
 	case FDP_NACK:

@@ -139,7 +139,8 @@ static void fuzz_begin(struct fuzz_pair *p)
 static void fuzz_pair_start(struct fuzz_pair *p, size_t datagram_max)
 {
 	static const char *const names[] = { "left", "right" };
-	const struct fdp_master_ops master_ops = { fuzz_master_send, fuzz_master_event, p };
+	const struct fdp_master_ops master_ops = { .send = fuzz_master_send, .event = fuzz_master_event,
+						   .ctx = p };
 	const struct fdp_node_ops node_ops = { fuzz_node_send, fuzz_node_event, p };
 	const struct fdp_master_params master = {
 		.session = FUZZ_SESSION, .key = { 1 }, .node_names = names, .node_count = 2,

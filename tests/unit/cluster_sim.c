@@ -214,7 +214,7 @@ void sim_init(struct sim *s, size_t nodes, uint64_t seed)
 
 void sim_start_master(struct sim *s)
 {
-	const struct fdp_master_ops ops = { master_send, master_event, s };
+	const struct fdp_master_ops ops = { .send = master_send, .event = master_event, .ctx = s };
 	const char *names[FDP_MAX_NODES];
 	struct fdp_master_params p = {
 		.session = ++s->session,
