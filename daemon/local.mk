@@ -12,6 +12,7 @@ daemon_libgdaemon_a_SOURCES = \
 	daemon/node_frame.c daemon/node_frame.h \
 	daemon/notify.c daemon/notify.h \
 	daemon/options.c daemon/options.h \
+	daemon/recorder.c daemon/recorder.h \
 	daemon/priority.c daemon/priority.h \
 	daemon/privileges.c daemon/privileges.h \
 	daemon/socket.c daemon/socket.h \
@@ -19,7 +20,7 @@ daemon_libgdaemon_a_SOURCES = \
 daemon_libgdaemon_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(LIBCONFIG_CFLAGS) $(SYSTEMD_CFLAGS)
 
 DAEMON_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(SODIUM_CFLAGS) $(SYSTEMD_CFLAGS) -pthread
-DAEMON_LIBS = daemon/libgdaemon.a $(PROTOCOL_LIBS) $(TRACKING_LIBS) $(RENDERER_LIBS) \
+DAEMON_LIBS = daemon/libgdaemon.a $(RECORD_LIBS) $(TRACKING_LIBS) $(RENDERER_LIBS) \
 	$(SYSTEMD_LIBS) -lpthread
 
 sbin_PROGRAMS += daemon/grotto-master daemon/grotto-node
@@ -27,6 +28,7 @@ sbin_PROGRAMS += daemon/grotto-master daemon/grotto-node
 daemon_grotto_master_SOURCES = \
 	daemon/master.c daemon/master.h \
 	daemon/master_main.c \
+	daemon/master_record.c \
 	daemon/master_report.c \
 	daemon/room_files.c daemon/room_files.h
 daemon_grotto_master_CFLAGS = $(DAEMON_CFLAGS)

@@ -85,6 +85,7 @@ static void on_event(void *ctx, const struct fdp_master_event *event)
 	int64_t now_ns = gr_clock_now(&gr_clock_monotonic);
 	uint64_t times;
 
+	recorder_event(m->recorder, now_ns, event);
 	switch (event->kind) {
 	case FDP_MASTER_JOINED:
 		/* Counts from the next frame on. */
@@ -117,10 +118,25 @@ static void on_event(void *ctx, const struct fdp_master_event *event)
 	case FDP_MASTER_MISMATCH: node_mismatch(m, event, now_ns); break;
 	case FDP_MASTER_SWAP:
 		m->swap_ns = now_ns;
+		recorder_swap(m->recorder, now_ns, event->frame, 0);
 		frame_stats_swap_sent(&m->stats, event->frame, now_ns);
 		notify_feed(&m->notify, now_ns);
 		break;
 	}
+}
+
+static void on_report(void *ctx, unsigned node, unsigned kind, const struct fdp_report *report)
+{
+	struct master *m = ctx;
+
+	recorder_report(m->recorder, m->heard_ns, node, kind, report);
+}
+
+static void on_sample(void *ctx, size_t tracker, const struct track_sample *sample, bool taken)
+{
+	struct master *m = ctx;
+
+	recorder_sample(m->recorder, m->polled_ns, tracker, sample, taken);
 }
 
 /*
@@ -162,9 +178,21 @@ static int64_t frame_deadline(const struct master *m)
 	return longer < RESTART_PATIENCE_NS ? longer : RESTART_PATIENCE_NS;
 }
 
+static void record_frame(struct master *m, uint64_t previous_frame, uint64_t previous_hash,
+			 int64_t now_ns)
+{
+	const struct record_frame frame = {
+		.frame = m->frame, .previous_frame = previous_frame,
+		.hash = fdp_master_hash(m->fdp), .previous_hash = previous_hash,
+		.live = barrier_nodes(m),
+	};
+
+	recorder_frame(m->recorder, now_ns, m->state, &frame);
+}
+
 static void begin_frame(struct master *m, int64_t now_ns)
 {
-	uint64_t frame = m->frame + 1, times;
+	uint64_t frame = m->frame + 1, previous_hash, times;
 	int64_t time_ns = frame_time(m, frame, now_ns);
 	int64_t to_swap_ns = m->params.frame_clock || m->stats.smoothed_swap_ns == 0 ?
 				     m->period_ns : m->stats.smoothed_swap_ns;
@@ -172,6 +200,7 @@ static void begin_frame(struct master *m, int64_t now_ns)
 	int r;
 
 	look_for_caught_up(m, now_ns);
+	m->polled_ns = now_ns;
 	trackers_poll(m->trackers, time_ns);
 	trackers_sample(m->trackers,
 			time_ns + to_swap_ns + m->params.layout->rates.display_latency_ns, &m->input);
@@ -186,10 +215,12 @@ static void begin_frame(struct master *m, int64_t now_ns)
 		gr_warning("frame %" PRIu64 ": %s is outside its range and keeps its value (%" PRIu64
 			   " since the last line)", frame, refused, times);
 	m->restart_light = false;
+	previous_hash = fdp_master_hash(m->fdp);
 	m->frame = frame;
 	r = fdp_master_begin(m->fdp, m->state, frame, now_ns);
 	frame_stats_begin(&m->stats, frame, barrier_nodes(m), now_ns);
 	net_flush(m->net);
+	record_frame(m, frame - 1, previous_hash, now_ns);
 	if (r < 0) {
 		gr_error("frame %" PRIu64 " cannot begin: %s", frame, gr_result_name(r));
 		loop_stop(m->loop);
@@ -268,6 +299,7 @@ static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	int node;
 
 	m->from = from;
+	m->heard_ns = now_ns;
 	node = fdp_master_receive(m->fdp, bytes, len, now_ns, &fresh);
 	m->from = NULL;
 	if (node < 0) {
@@ -347,6 +379,8 @@ static void on_second(void *ctx, int64_t now_ns)
 			      m->frame, m->frame - m->logged_frame, live, all);
 	m->logged_frame = m->frame;
 	log_send_failures(m, now_ns);
+	if (m->recorder)
+		recorder_watch(m->recorder);
 	loop_timer_set(m->loop, m->second_timer, now_ns + GR_NS_PER_S);
 	advance(m);
 }
@@ -365,7 +399,9 @@ static int create_protocol(struct master *m)
 		.multicast = layout->network.cast != LAYOUT_UNICAST,
 		.share_bytes = m->params.scene->gi.share == SCENE_SHARE_CLUSTER ? FDP_SHARE_MAX : 0,
 	};
-	struct fdp_master_ops ops = { send_datagram, on_event, m };
+	struct fdp_master_ops ops = {
+		.send = send_datagram, .event = on_event, .report = on_report, .ctx = m
+	};
 	int r;
 
 	for (size_t i = 0; i < layout->node_count; i++)
@@ -390,6 +426,7 @@ int master_create(struct master **out, struct loop *loop, struct net *net,
 	m->loop = loop;
 	m->net = net;
 	m->trackers = trackers;
+	trackers->tap = (struct trackers_tap){ on_sample, m };
 	m->period_ns = llrint(1e9 / (double)params->layout->rates.frame_hz);
 	do
 		randombytes_buf(&m->session, sizeof m->session);
@@ -418,6 +455,11 @@ int master_create(struct master **out, struct loop *loop, struct net *net,
 	on_second(m, m->start_ns);
 	*out = m;
 	return GR_OK;
+}
+
+void master_use_recorder(struct master *master, struct recorder *recorder)
+{
+	master->recorder = recorder;
 }
 
 void master_leave(struct master *master)

@@ -17,6 +17,7 @@
 #include "daemon/loop.h"
 #include "daemon/master_state.h"
 #include "daemon/notify.h"
+#include "daemon/recorder.h"
 #include "daemon/socket.h"
 #include "daemon/trackers.h"
 #include "protocol/master.h"
@@ -28,6 +29,7 @@ struct master_params {
 	const struct layout *layout;
 	const struct scene_file *scene;
 	struct fdp_contents contents;
+	const char *layout_path, *scene_path; /* absolute, for records; or NULL */
 	uint8_t key[FDP_KEY_BYTES];
 	uint64_t frames; /* end after so many; 0: for ever */
 	unsigned expect; /* nodes that must be live before the first frame, at least 1 */
@@ -39,12 +41,14 @@ struct master {
 	struct loop *loop;
 	struct net *net;
 	const struct net_address *from; /* of the datagram that is being handled, or NULL */
+	int64_t heard_ns, polled_ns;    /* when it came; when the trackers were asked last */
 	struct trackers *trackers;
 	struct fdp_master *fdp;
 	struct param_state *state;
 	struct master_state scene_state;
 	struct master_input input;
 	struct notify notify;
+	struct recorder *recorder; /* NULL: nothing can be recorded */
 	struct frame_stats stats;
 
 	uint64_t session, frame; /* frame: the last begun */
@@ -71,6 +75,10 @@ struct master {
 /* net and trackers are borrowed; the loop too. On failure the log says why. */
 int master_create(struct master **out, struct loop *loop, struct net *net,
 		  struct trackers *trackers, const struct master_params *params);
+/* From now on what happens can be recorded. The recorder is borrowed. */
+void master_use_recorder(struct master *master, struct recorder *recorder);
+/* Begins a recording: as recorder_start. */
+int master_record(struct master *master, const char *path, char *why, size_t size);
 /* Says LEAVE to the nodes, once. */
 void master_leave(struct master *master);
 void master_destroy(struct master **master);

@@ -2,6 +2,8 @@
  * grotto-master: reads and checks everything, opens ports and trackers, gives
  * up privileges, says READY, and runs the room until it is told to end.
  */
+#include "config.h" /* asprintf */
+
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/result.h"
@@ -14,17 +16,32 @@
 #include "daemon/room_files.h"
 
 #include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 struct opened {
 	struct room_files files;
+	char *layout_path, *scene_path, *record_path; /* absolute */
+	struct recorder *recorder;
 	struct trackers trackers;
 	struct loop *loop;
 	struct net *net;
 	struct master *master;
 	struct control *control;
 };
+
+/* Of a file that need not be there yet. Caller frees; NULL without memory. */
+static char *absolute(const char *path)
+{
+	char *folder = path[0] == '/' ? NULL : realpath(".", NULL);
+	char *whole = NULL;
+
+	if (asprintf(&whole, "%s%s%s", folder ? folder : "", folder ? "/" : "", path) < 0)
+		whole = NULL;
+	free(folder);
+	return whole;
+}
 
 static int load(struct opened *o, const struct master_options *options)
 {
@@ -41,6 +58,13 @@ static int load(struct opened *o, const struct master_options *options)
 			 o->files.layout->node_count == 1 ? "" : "s");
 		return GR_ERR_CONFIG;
 	}
+	o->layout_path = realpath(options->common.layout, NULL);
+	o->scene_path = realpath(options->common.scene, NULL);
+	if (options->record) {
+		o->record_path = absolute(options->record);
+		if (!o->record_path)
+			return GR_ERR_NOMEM;
+	}
 	r = trackers_open(&o->trackers, o->files.layout, &diag);
 	gr_diag_log(&diag);
 	gr_diag_finish(&diag);
@@ -53,6 +77,8 @@ static void fill_params(struct master_params *params, const struct opened *o,
 	*params = (struct master_params){
 		.layout = o->files.layout,
 		.scene = o->files.scene_file,
+		.layout_path = o->layout_path,
+		.scene_path = o->scene_path,
 		.frames = (uint64_t)options->frames,
 		.expect = options->wait_all ? (unsigned)o->files.layout->node_count :
 					      (unsigned)options->expect,
@@ -67,6 +93,26 @@ static const char *control_path(const struct opened *o, const struct master_opti
 	const char *path = options->control ? options->control : o->files.layout->control_socket;
 
 	return path && strcmp(path, "none") ? path : NULL;
+}
+
+/* Starts a thread, so once privileges are given up. */
+static int open_recorder(struct opened *o)
+{
+	char why[256];
+	int r = recorder_create(&o->recorder);
+
+	if (r < 0) {
+		gr_error("cannot record: %s", gr_result_name(r));
+		return r;
+	}
+	master_use_recorder(o->master, o->recorder);
+	if (!o->record_path)
+		return GR_OK;
+	if (master_record(o->master, o->record_path, why, sizeof why) < 0) {
+		gr_error("--record: %s", why);
+		return GR_ERR_CONFIG;
+	}
+	return recorder_await(o->recorder) < 0 ? GR_ERR_CONFIG : GR_OK;
 }
 
 static int open_all(struct opened *o, const struct master_options *options)
@@ -88,7 +134,7 @@ static int open_all(struct opened *o, const struct master_options *options)
 	/* Root could write it; can who is left? */
 	if (r >= 0 && options->common.report && json_try(options->common.report) < 0)
 		r = GR_ERR_CONFIG;
-	return r;
+	return r < 0 ? r : open_recorder(o);
 }
 
 static int run(struct opened *o)
@@ -129,10 +175,14 @@ static void close_all(struct opened *o)
 {
 	control_destroy(&o->control);
 	master_destroy(&o->master);
+	recorder_destroy(&o->recorder); /* waits for the disk */
 	net_close(&o->net);
 	trackers_close(&o->trackers);
 	room_files_finish(&o->files);
 	loop_destroy(&o->loop);
+	free(o->layout_path);
+	free(o->scene_path);
+	free(o->record_path);
 }
 
 int main(int argc, char **argv)

@@ -146,6 +146,14 @@ static void write_tracking(struct json *json, const struct master *m)
 	json_close(json, '}');
 }
 
+static void write_record(struct json *json, const struct master *m)
+{
+	json_open(json, "record", '{');
+	if (m->recorder)
+		recorder_write_json(m->recorder, json);
+	json_close(json, '}');
+}
+
 static void write_settings(struct json *json, const struct master *m)
 {
 	const struct master_settings *s = &m->scene_state.settings;
@@ -190,6 +198,7 @@ int master_write_json(const struct master *m, int64_t now_ns, char *text, size_t
 	write_wire(&json, m);
 	write_tracking(&json, m);
 	write_settings(&json, m);
+	write_record(&json, m);
 	json_close(&json, '}');
 	*out_len = json.len;
 	return json.ok ? GR_OK : GR_ERR_RANGE;
@@ -214,7 +223,30 @@ static void answer_set(struct master *m, char *const *words, int count, char *an
 		return;
 	}
 	gr_info("control: %s was set", words[1]);
+	recorder_setting(m->recorder, gr_clock_now(&gr_clock_monotonic), m->frame, words + 1, count - 1);
 	answer_ok(answer, size);
+}
+
+static void answer_record(struct master *m, char *const *words, int count, char *answer, size_t size)
+{
+	struct json json = json_start(answer, size);
+	char why[256] = "write: record, record start PATH, record stop";
+	int r = GR_ERR_RANGE;
+
+	if (count == 1)
+		r = GR_OK;
+	else if (!strcmp(words[1], "start") && count == 3)
+		r = master_record(m, words[2], why, sizeof why);
+	else if (!strcmp(words[1], "stop") && count == 2 && m->recorder)
+		r = recorder_stop(m->recorder, why, sizeof why);
+	if (r < 0) {
+		control_refuse(answer, size, "%s", why);
+		return;
+	}
+	json_open(&json, NULL, '{');
+	json_bool(&json, "ok", true);
+	write_record(&json, m);
+	json_close(&json, '}');
 }
 
 void master_answer(void *ctx, char *const *words, int count, char *answer, size_t size)
@@ -227,12 +259,14 @@ void master_answer(void *ctx, char *const *words, int count, char *answer, size_
 			control_refuse(answer, size, "the answer is longer than %zu bytes", size);
 	} else if (!strcmp(words[0], "set")) {
 		answer_set(m, words, count, answer, size);
+	} else if (!strcmp(words[0], "record")) {
+		answer_record(m, words, count, answer, size);
 	} else if (!strcmp(words[0], "quit") && count == 1) {
 		gr_notice("control: asked to end");
 		answer_ok(answer, size);
 		loop_stop(m->loop);
 	} else {
-		control_refuse(answer, size, "no request '%.40s'; there are status, set NAME VALUE..., quit",
+		control_refuse(answer, size, "no request '%.40s'; there are status, set NAME VALUE..., record, quit",
 			       words[0]);
 	}
 }

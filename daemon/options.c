@@ -145,6 +145,7 @@ static const char *const target_words[] = { "layout", "headless", "window", "ful
 static const struct option_spec master_specs[] = {
 	COMMON(master_options),
 	{ "control", OPTION_TEXT, AT(master_options, control), "PATH", "control socket instead of the layout's, or none", 0, 0, NULL, NULL },
+	{ "record", OPTION_TEXT, AT(master_options, record), "FILE", "record the session at the end of this file", 0, 0, NULL, NULL },
 	{ "frames", OPTION_INT, AT(master_options, frames), "N", "end after N frames", 1, INT_MAX, NULL, NULL },
 	{ "frame-clock", OPTION_FLAG, AT(master_options, frame_clock), NULL, "frame N is at N / frame_hz seconds; as fast as the barrier allows", 0, 0, NULL, NULL },
 	{ "wait-all", OPTION_FLAG, AT(master_options, wait_all), NULL, "no frame before every node of the layout is there", 0, 0, NULL, NULL },

@@ -47,6 +47,7 @@ struct common_options {
 struct master_options {
 	struct common_options common;
 	const char *control; /* path, "none", or NULL: the layout's */
+	const char *record;  /* file, or NULL */
 	int frames;          /* 0: for ever */
 	_Bool frame_clock, wait_all;
 	int expect;

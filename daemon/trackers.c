@@ -79,18 +79,26 @@ void trackers_close(struct trackers *trackers)
 	trackers->count = 0;
 }
 
+static void take(struct trackers *trackers, size_t i, const struct track_sample *sample,
+		 int64_t now_ns)
+{
+	const struct layout_tracker *tracker = trackers->of[i];
+	const bool wanted = sample->body == TRACK_HEAD ? tracker->head : tracker->wand;
+	const bool taken = wanted && track_history_add(&trackers->history, sample, now_ns) == GR_OK;
+
+	if (trackers->tap.sample)
+		trackers->tap.sample(trackers->tap.ctx, i, sample, taken);
+}
+
 void trackers_poll(struct trackers *trackers, int64_t now_ns)
 {
 	struct track_sample samples[POLL_BATCH];
 
 	for (size_t i = 0; i < trackers->count; i++) {
-		const struct layout_tracker *tracker = trackers->of[i];
-
 		for (int round = 0; round < POLL_ROUNDS; round++) {
 			int n = track_poll(trackers->sources[i], now_ns, samples, POLL_BATCH);
 			for (int k = 0; k < n; k++)
-				if (samples[k].body == TRACK_HEAD ? tracker->head : tracker->wand)
-					track_history_add(&trackers->history, &samples[k], now_ns);
+				take(trackers, i, &samples[k], now_ns);
 			if (n < POLL_BATCH)
 				break;
 		}

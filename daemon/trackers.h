@@ -17,8 +17,15 @@
 #define TRACKERS_AHEAD_NS (100 * INT64_C(1000000)) /* poses are extrapolated at most this far */
 #define TRACKERS_STALE_NS (500 * INT64_C(1000000)) /* older than this: not tracked */
 
+/* Told of every sample, as it came; taken: the history has it. */
+struct trackers_tap {
+	void (*sample)(void *ctx, size_t tracker, const struct track_sample *sample, bool taken);
+	void *ctx;
+};
+
 struct trackers {
 	const struct layout *layout;
+	struct trackers_tap tap; /* sample may be NULL */
 	struct track_source *sources[TRACKERS_MAX];
 	const struct layout_tracker *of[TRACKERS_MAX];
 	size_t count;
