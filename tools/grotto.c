@@ -18,6 +18,7 @@ static const struct command {
 	{ "check", command_check, "check layout and scene files, report gaps between walls" },
 	{ "demo", command_demo, "run a whole cave on this machine, leave its pictures and figures" },
 	{ "key", command_key, "make a cluster key" },
+	{ "record", command_record, "record a running room, look at recordings" },
 	{ "reference", command_reference, "path-trace what the renderer should show" },
 	{ "render", command_render, "draw one still of a scene" },
 	{ "status", command_status, "ask the running master how its room is" },
