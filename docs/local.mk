@@ -11,6 +11,6 @@ dist_doc_DATA += docs/reference.md
 dist_doc_DATA += docs/bench.md docs/bench-box.svg docs/bench-box-closed.svg docs/bench-cornell-mirror.svg \
 	docs/bench-cornell-spot.svg docs/bench-grotto.svg docs/bench-sponza.svg
 dist_doc_DATA += docs/view.md
-dist_doc_DATA += docs/results.md docs/demo-room.png
+dist_doc_DATA += docs/results.md docs/goals.md docs/demo-room.png
 dist_doc_DATA += docs/comparing.md
 dist_doc_DATA += docs/baking.md
