@@ -185,7 +185,8 @@ int command_status(int argc, char **argv)
 	};
 	const struct cli_table table = {
 		"grotto status [--socket PATH | --layout FILE] [--json]",
-		"Asks the running master how its room is: nodes, frames, timing, datagrams.",
+		"Asks the running master how its room is: nodes, frames, timing, datagrams, and\n"
+		"how light is computed.",
 		options, sizeof options / sizeof options[0]
 	};
 	struct layout *layout = NULL;

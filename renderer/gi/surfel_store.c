@@ -352,10 +352,11 @@ int surfels_load_or_bake(struct surfel_set **out, const struct scene *scene,
 		result = surfel_store_get(&store, out, scene, file, &told, &diag, &done);
 	gr_diag_log(&diag);
 	gr_diag_finish(&diag);
-	if (result == GR_OK && done.baked)
+	/* a scene without a file is the calibration's, or a test's */
+	if (result == GR_OK && done.baked && file->path)
 		gr_info("surfels: %zu baked in %.1f s, kept as %s", (*out)->count, (*out)->seconds,
 			done.path ? done.path : "nothing");
-	else if (result == GR_OK)
+	else if (result == GR_OK && !done.baked)
 		gr_info("surfels: %zu read from %s", (*out)->count, done.path);
 	surfel_store_finish(&store);
 	return result;
