@@ -17,6 +17,7 @@ const char *gr_result_name(int result)
 	case GR_ERR_TIMEOUT: return "timed out";
 	case GR_ERR_STATE: return "wrong state";
 	case GR_ERR_MISMATCH: return "content mismatch";
+	case GR_ERR_REPLAY: return "said before";
 	}
 	return "unknown result";
 }

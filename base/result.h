@@ -21,6 +21,7 @@ enum gr_result {
 	GR_ERR_TIMEOUT = -10,
 	GR_ERR_STATE = -11,  /* not in this state of the object */
 	GR_ERR_MISMATCH = -12, /* two parties hold different content */
+	GR_ERR_REPLAY = -13,   /* bytes from outside have been here before, or were for somebody else */
 };
 
 /* The name of a result, for logs: "ok", "out of memory", ... Never NULL. */

@@ -7,6 +7,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <sodium.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -289,6 +290,21 @@ static void advance(struct master *m)
 	loop_timer_set(m->loop, m->tick_timer, fdp_master_next(m->fdp));
 }
 
+static void note_dropped(struct master *m, int result, const uint8_t *bytes, size_t len,
+			 const struct net_address *from, int64_t now_ns)
+{
+	struct dropped_datagram dropped = {
+		.from = from, .peer = net_peer(m->net, from), .bytes = bytes, .len = len
+	};
+	char name[LAYOUT_NAME_MAX + 8];
+
+	if (dropped.peer >= 0) {
+		snprintf(name, sizeof name, "node %s", node_name(m, dropped.peer));
+		dropped.name = name;
+	}
+	dropped_add(&m->bad, result, &dropped, now_ns);
+}
+
 static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 			const struct net_address *from)
 {
@@ -303,7 +319,7 @@ static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	node = fdp_master_receive(m->fdp, bytes, len, now_ns, &fresh);
 	m->from = NULL;
 	if (node < 0) {
-		dropped_add(&m->bad, node, from, now_ns);
+		note_dropped(m, node, bytes, len, from, now_ns);
 		return;
 	}
 	/* Whoever sends a recording again must not have what is for the node. */

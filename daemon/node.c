@@ -135,10 +135,14 @@ static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	struct node *n = ctx;
 	int64_t now_ns = gr_clock_now(&gr_clock_monotonic);
 	int r = fdp_node_receive(n->fdp, bytes, len, now_ns);
+	struct dropped_datagram dropped = { .from = from, .bytes = bytes, .len = len };
 
 	/* A master's words before it has taken us are none of ours, and nothing bad. */
-	if (r < 0 && !(r == GR_ERR_MISMATCH && fdp_node_status(n->fdp) != FDP_NODE_LIVE))
-		dropped_add(&n->bad, r, from, now_ns);
+	if (r >= 0 || (r == GR_ERR_MISMATCH && fdp_node_status(n->fdp) != FDP_NODE_LIVE))
+		return;
+	dropped.peer = net_peer(n->net, from);
+	dropped.name = dropped.peer >= 0 ? "the master" : NULL;
+	dropped_add(&n->bad, r, &dropped, now_ns);
 }
 
 /* Sends what is due; answers leave before any drawing begins. */

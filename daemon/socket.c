@@ -396,6 +396,14 @@ void net_flush(struct net *net)
 	net->queued = 0;
 }
 
+int net_peer(const struct net *net, const struct net_address *from)
+{
+	for (size_t i = 0; i < net->peer_count; i++)
+		if (net_address_equal(&net->peers[i], from))
+			return (int)i;
+	return -1;
+}
+
 void net_learn(struct net *net, int node, const struct net_address *from)
 {
 	if (node >= 0 && (size_t)node < net->peer_count && !net_address_equal(&net->peers[node], from))

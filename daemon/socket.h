@@ -62,6 +62,8 @@ void net_send(struct net *net, int to, const uint8_t *bytes, size_t len);
 void net_flush(struct net *net);
 /* Master: queues an answer to where a datagram came from. */
 void net_send_to(struct net *net, const struct net_address *to, const uint8_t *bytes, size_t len);
+/* Which node (on a node: 0, the master) speaks from there, as the layout says; -1: nobody. */
+int net_peer(const struct net *net, const struct net_address *from);
 /* Master: node `node` was heard from there, and it was no recording. */
 void net_learn(struct net *net, int node, const struct net_address *from);
 

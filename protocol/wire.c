@@ -7,6 +7,8 @@
 
 #include <sodium.h>
 
+#define VERSION_AT 4
+
 static const uint8_t magic[4] = { 'G', 'F', 'D', 'P' };
 
 #define FLAG_PACKED 1u
@@ -44,13 +46,18 @@ int fdp_verdict_result(enum fdp_verdict verdict)
 	switch (verdict) {
 	case FDP_GOOD: return GR_OK;
 	case FDP_BAD_VERSION: return GR_ERR_VERSION;
-	case FDP_BAD_AUTH:
-	case FDP_BAD_REPLAY: return GR_ERR_AUTH;
+	case FDP_BAD_AUTH: return GR_ERR_AUTH;
+	case FDP_BAD_REPLAY: return GR_ERR_REPLAY;
 	case FDP_BAD_SESSION: return GR_ERR_MISMATCH;
 	case FDP_BAD_SHORT:
 	case FDP_BAD_FORMAT: break;
 	}
 	return GR_ERR_FORMAT;
+}
+
+unsigned fdp_wire_version(const uint8_t *bytes, size_t len)
+{
+	return len > VERSION_AT && !memcmp(bytes, magic, sizeof magic) ? bytes[VERSION_AT] : 0;
 }
 
 /* Over header (less the MAC) and payload, which do not touch: two updates. */

@@ -86,7 +86,7 @@ enum fdp_verdict {
 	FDP_BAD_REPLAY,
 };
 void fdp_count_bad(struct fdp_counters *counters, enum fdp_verdict verdict);
-/* As a negative result: GR_ERR_FORMAT, GR_ERR_VERSION, GR_ERR_AUTH or GR_ERR_MISMATCH. */
+/* As a negative result: GR_ERR_FORMAT, _VERSION, _AUTH, _MISMATCH or _REPLAY. */
 int fdp_verdict_result(enum fdp_verdict verdict);
 
 /* Who may come in. Bits of kinds are 1 << kind. */
@@ -117,6 +117,8 @@ void fdp_wire_seal(const struct fdp_header *header, const uint8_t key[FDP_KEY_BY
 void fdp_wire_sign(const uint8_t key[FDP_KEY_BYTES], uint8_t *bytes, size_t len);
 /* Constant-time comparison of the MAC in a datagram of at least FDP_HEADER_BYTES. */
 bool fdp_wire_authentic(const uint8_t key[FDP_KEY_BYTES], const uint8_t *bytes, size_t len);
+/* The version that a datagram says it is of; 0 when it is none of FDP. */
+unsigned fdp_wire_version(const uint8_t *bytes, size_t len);
 const char *fdp_kind_name(enum fdp_kind kind);
 
 #endif

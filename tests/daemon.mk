@@ -18,6 +18,12 @@ tests_unit_test_daemon_parts_SOURCES = tests/unit/test_daemon_parts.c tests/unit
 tests_unit_test_daemon_parts_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_daemon_parts_LDADD = $(DAEMON_PART_LIBS)
 
+check_PROGRAMS += tests/unit/test_dropped
+TESTS += tests/unit/test_dropped
+tests_unit_test_dropped_SOURCES = tests/unit/test_dropped.c tests/unit/unit.h
+tests_unit_test_dropped_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_dropped_LDADD = daemon/libgdaemon.a $(PROTOCOL_LIBS) $(CMOCKA_LIBS)
+
 tests_unit_test_socket_SOURCES = tests/unit/test_socket.c tests/unit/unit.h
 tests_unit_test_socket_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_socket_LDADD = $(DAEMON_PART_LIBS)

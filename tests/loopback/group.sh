@@ -22,12 +22,16 @@ for cast in "multicast 239.255.71.5" "broadcast 127.255.255.255"; do
 	echo "ok: $1"
 done
 
-# A node with another key: neither taken nor told anything.
+# A node with another key: neither taken nor told anything, and both sides say so.
 tr '0-9a-f' '1-9a-f0' < "$dir/room.key" > "$dir/other.key"
 chmod 640 "$dir/other.key"
 start_master
 start_node front --key "$dir/other.key"
-wait_for 120 says master "authentication failed"
+wait_for 120 says master "(node front): signed with another key, or forged; both sides need"
+wait_for 30 says front "(the master): signed with another key, or forged; both sides need"
+sleep 1
+[ "$(count master "signed with another key")" -eq 1 ] || fail "more than a line a minute (master)"
+[ "$(count front "signed with another key")" -eq 1 ] || fail "more than a line a minute (front)"
 status_to
 [ "$(node_field "$dir/status.json" front state)" = absent ] || fail "a node with another key was taken"
 kill -TERM "$master_pid" "$pid_front"

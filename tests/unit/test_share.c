@@ -387,7 +387,7 @@ static uint16_t say_slice(struct room *room, struct fdp_piece piece, size_t len,
 	/* Sent once more it is a replay, whatever it says. */
 	assert_int_equal(fdp_master_receive(room->sim.master, exact, FDP_HEADER_BYTES + h.payload_len,
 					    room->sim.now_ns, NULL),
-			 room->sim.master->share.room ? GR_ERR_AUTH : GR_ERR_FORMAT);
+			 room->sim.master->share.room ? GR_ERR_REPLAY : GR_ERR_FORMAT);
 	free(exact);
 	assert_int_equal(r < 0, after.bad_format > before.bad_format);
 	return (uint16_t)(after.bad_format - before.bad_format);
