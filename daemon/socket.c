@@ -14,8 +14,8 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
-#define NET_QUEUE 64
 #define NET_BATCH 16
+#define NET_GROUP LAYOUT_MAX_NODES /* the way to the group */
 #define NET_BUFFER (4 << 20)
 
 struct net {
@@ -26,13 +26,8 @@ struct net {
 	struct net_address peers[LAYOUT_MAX_NODES]; /* master: nodes; node: [0] the master */
 	size_t peer_count;
 	size_t datagram_max;
-	struct net_stats stats;
-
-	struct mmsghdr out[NET_QUEUE];
-	struct iovec out_iov[NET_QUEUE];
-	struct net_address out_to[NET_QUEUE];
-	uint8_t *out_bytes; /* NET_QUEUE * datagram_max */
-	unsigned queued;
+	uint64_t oversized, too_long; /* arrived; asked to be sent */
+	struct send_queue *out;
 
 	struct mmsghdr in[NET_BATCH];
 	struct iovec in_iov[NET_BATCH];
@@ -224,12 +219,6 @@ static int parse_or_say(const char *text, uint16_t port, struct net_address *out
 
 static void prepare_messages(struct net *net)
 {
-	for (int i = 0; i < NET_QUEUE; i++) {
-		net->out_iov[i].iov_base = net->out_bytes + (size_t)i * net->datagram_max;
-		net->out[i].msg_hdr = (struct msghdr){ .msg_name = &net->out_to[i].sa,
-						       .msg_iov = &net->out_iov[i],
-						       .msg_iovlen = 1 };
-	}
 	for (int i = 0; i < NET_BATCH; i++) {
 		net->in_iov[i] = (struct iovec){ net->in_bytes + (size_t)i * net->datagram_max,
 						 net->datagram_max };
@@ -249,10 +238,9 @@ static int net_new(struct net **out, const struct layout_network *network)
 	net->fd = net->group_fd = -1;
 	net->datagram_max = net_datagram_max(network);
 	net->has_group = network->cast != LAYOUT_UNICAST;
-	net->out_bytes = malloc(NET_QUEUE * net->datagram_max + 1);
 	net->in_bytes = malloc(NET_BATCH * net->datagram_max + 1);
 	*out = net;
-	if (!net->out_bytes || !net->in_bytes) {
+	if (send_queue_create(&net->out, net->datagram_max) < 0 || !net->in_bytes) {
 		net_close(out);
 		return GR_ERR_NOMEM;
 	}
@@ -316,7 +304,7 @@ void net_close(struct net **net)
 		close(n->fd);
 	if (n->group_fd >= 0)
 		close(n->group_fd);
-	free(n->out_bytes);
+	send_queue_destroy(&n->out);
 	free(n->in_bytes);
 	free(n);
 	*net = NULL;
@@ -331,35 +319,37 @@ int net_fds(const struct net *net, int fds[2])
 
 void net_stats(const struct net *net, struct net_stats *out)
 {
-	*out = net->stats;
+	struct send_stats sent;
+
+	send_queue_stats(net->out, &sent);
+	*out = (struct net_stats){
+		.sent = sent.sent, .send_failed = sent.failed + net->too_long,
+		.oversized = net->oversized, .send_errno = sent.error,
+		.send_calls = sent.calls, .joined = sent.joined,
+	};
+	if (!out->send_errno && net->too_long)
+		out->send_errno = EMSGSIZE;
 }
 
-static void queue(struct net *net, const struct net_address *to, const uint8_t *bytes, size_t len)
+/* way: peer's index, NET_GROUP or SEND_ALONE. */
+static void queue(struct net *net, int way, const struct net_address *to, const uint8_t *bytes,
+		  size_t len)
 {
-	unsigned i;
-
-	if (net->queued == NET_QUEUE)
+	if (send_queue_count(net->out) == SEND_QUEUE)
 		net_flush(net);
-	i = net->queued++;
-	memcpy(net->out_iov[i].iov_base, bytes, len);
-	net->out_iov[i].iov_len = len;
-	net->out_to[i] = *to;
-	net->out[i].msg_hdr.msg_namelen = to->len;
+	send_queue_add(net->out, way, to, bytes, len);
 }
 
 static bool too_long(struct net *net, size_t len)
 {
-	if (len <= net->datagram_max)
-		return false;
-	net->stats.send_failed++;
-	net->stats.send_errno = EMSGSIZE;
-	return true;
+	net->too_long += len > net->datagram_max;
+	return len > net->datagram_max;
 }
 
 void net_send_to(struct net *net, const struct net_address *to, const uint8_t *bytes, size_t len)
 {
 	if (!too_long(net, len))
-		queue(net, to, bytes, len);
+		queue(net, SEND_ALONE, to, bytes, len);
 }
 
 void net_send(struct net *net, int to, const uint8_t *bytes, size_t len)
@@ -367,33 +357,18 @@ void net_send(struct net *net, int to, const uint8_t *bytes, size_t len)
 	if (too_long(net, len))
 		return;
 	if (to >= 0 && (size_t)to < net->peer_count) {
-		queue(net, &net->peers[to], bytes, len);
+		queue(net, to, &net->peers[to], bytes, len);
 	} else if (to < 0 && net->has_group) {
-		queue(net, &net->group, bytes, len);
+		queue(net, NET_GROUP, &net->group, bytes, len);
 	} else if (to < 0) {
 		for (size_t i = 0; i < net->peer_count; i++)
-			queue(net, &net->peers[i], bytes, len);
+			queue(net, (int)i, &net->peers[i], bytes, len);
 	}
 }
 
 void net_flush(struct net *net)
 {
-	unsigned done = 0;
-
-	while (done < net->queued) {
-		int n = sendmmsg(net->fd, net->out + done, net->queued - done, MSG_NOSIGNAL);
-
-		if (n > 0) {
-			done += (unsigned)n;
-			net->stats.sent += (uint64_t)n;
-		} else if (n < 0 && errno != EINTR) {
-			/* Full buffer, no route, a node that is not there: this one is lost. */
-			net->stats.send_failed++;
-			net->stats.send_errno = errno;
-			done++;
-		}
-	}
-	net->queued = 0;
+	send_queue_flush(net->out, net->fd);
 }
 
 int net_peer(const struct net *net, const struct net_address *from)
@@ -425,7 +400,7 @@ int net_receive(struct net *net, int fd, int most, net_receive_fn fn, void *ctx)
 		for (int i = 0; i < n; i++) {
 			net->in_from[i].len = net->in[i].msg_hdr.msg_namelen;
 			if (net->in[i].msg_hdr.msg_flags & MSG_TRUNC)
-				net->stats.oversized++;
+				net->oversized++;
 			else
 				fn(ctx, net->in_iov[i].iov_base, net->in[i].msg_len, &net->in_from[i]);
 		}

@@ -3,7 +3,7 @@
  * master's fans out to all nodes (unicast, one send for all by multicast or
  * broadcast), a node's speaks to its master.
  *
- * Sends are queued and leave in batches (sendmmsg); datagrams arrive in
+ * Sends are queued and leave in batches (send_queue.h); datagrams arrive in
  * batches (recvmmsg) into fixed buffers. Nothing is allocated after opening.
  * Lost sends are counted, not retried: the protocol repairs.
  *
@@ -13,19 +13,9 @@
 #define GROTTO_DAEMON_SOCKET_H
 
 #include "config/layout.h"
-
-#include <netinet/in.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <sys/socket.h>
+#include "daemon/send_queue.h"
 
 #define NET_ADDRESS_TEXT 64
-
-struct net_address {
-	struct sockaddr_storage sa;
-	socklen_t len;
-};
 
 /* Numeric IPv4 or IPv6 (with %scope); GR_ERR_FORMAT otherwise. */
 int net_address_parse(const char *text, uint16_t port, struct net_address *out);
@@ -40,6 +30,7 @@ struct net_stats {
 	uint64_t sent, send_failed; /* datagrams on the wire; refused by the system */
 	uint64_t oversized;         /* arrived longer than the layout allows */
 	int send_errno;             /* of the last failure */
+	uint64_t send_calls, joined; /* system calls; datagrams that left together (UDP GSO) */
 };
 
 struct net;

@@ -24,6 +24,12 @@ tests_unit_test_dropped_SOURCES = tests/unit/test_dropped.c tests/unit/unit.h
 tests_unit_test_dropped_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_dropped_LDADD = daemon/libgdaemon.a $(PROTOCOL_LIBS) $(CMOCKA_LIBS)
 
+check_PROGRAMS += tests/unit/test_send_queue
+TESTS += tests/unit/test_send_queue
+tests_unit_test_send_queue_SOURCES = tests/unit/test_send_queue.c tests/unit/unit.h
+tests_unit_test_send_queue_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_send_queue_LDADD = $(DAEMON_PART_LIBS)
+
 tests_unit_test_socket_SOURCES = tests/unit/test_socket.c tests/unit/unit.h
 tests_unit_test_socket_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_socket_LDADD = $(DAEMON_PART_LIBS)
