@@ -32,6 +32,13 @@ tests_unit_test_surfel_file_SOURCES = tests/unit/test_surfel_file.c tests/unit/u
 tests_unit_test_surfel_file_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
 tests_unit_test_surfel_file_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS)
 
+check_PROGRAMS += tests/unit/test_surfel_store
+TESTS += tests/unit/test_surfel_store
+tests_unit_test_surfel_store_SOURCES = tests/unit/test_surfel_store.c tests/unit/unit.h \
+	$(LATTICE_ROOM_SOURCES)
+tests_unit_test_surfel_store_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
+tests_unit_test_surfel_store_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS)
+
 check_PROGRAMS += tests/unit/test_plan
 TESTS += tests/unit/test_plan
 tests_unit_test_plan_SOURCES = tests/unit/test_plan.c tests/unit/unit.h

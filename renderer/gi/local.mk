@@ -17,6 +17,7 @@ RENDERER_SOURCES += \
 	renderer/gi/surfel_cells.c renderer/gi/surfel_count.c renderer/gi/surfel_count.h renderer/gi/surfel_fixed.c renderer/gi/surfel_links.c renderer/gi/surfel_material.c \
 	renderer/gi/surfel_patch_data.c renderer/gi/surfel_patches.c renderer/gi/surfel_points.c renderer/gi/surfel_probes.c \
 	renderer/gi/surfel_file.c renderer/gi/surfel_file.h renderer/gi/surfel_file_check.c renderer/gi/surfel_file_private.h \
+	renderer/gi/surfel_lock.c renderer/gi/surfel_lock.h \
 	renderer/gi/surfel_store.c renderer/gi/surfel_store.h \
 	renderer/gi/surfel_random.h renderer/gi/surfel_reach.c renderer/gi/surfel_surface.c \
 	renderer/gi/surfel_grid.c renderer/gi/surfel_set.c renderer/gi/surfel_set.h renderer/gi/surfel_start.c \

@@ -5,20 +5,15 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/result.h"
+#include "renderer/gi/surfel_lock.h"
 
 #include <errno.h>
-#include <fcntl.h>
-#include <limits.h>
 #include <sodium.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
 #include <sys/stat.h>
-#include <time.h>
-#include <unistd.h>
 
-#define POLL_NS 50000000 /* how often a lock is asked for */
 #define HASH_BYTES 8
 
 /* --- places --- */
@@ -88,7 +83,8 @@ int surfel_store_init(struct surfel_store *out, const struct scene_file *file)
 
 int surfel_store_at(struct surfel_store *out, const char *path)
 {
-	*out = (struct surfel_store){ .wait_s = SURFEL_STORE_WAIT_S, .beside = strdup(path) };
+	*out = (struct surfel_store){ .wait_s = SURFEL_STORE_WAIT_S, .beside = strdup(path),
+				      .one_place = true };
 	return out->beside ? GR_OK : GR_ERR_NOMEM;
 }
 
@@ -121,164 +117,127 @@ static void make_folder(const char *path)
 	free(folder);
 }
 
-/* --- the lock --- */
-
-/*
- * PATH.lock, held by flock and gone with its holder's work. Who gets it looks
- * whether it is still the file of that name: the one before may have removed it.
- */
-struct lock {
-	char *path;
-	int fd; /* -1: not held */
-};
-
-static bool is_still_there(const struct lock *lock)
-{
-	struct stat held, named;
-
-	return fstat(lock->fd, &held) == 0 && stat(lock->path, &named) == 0 &&
-	       held.st_ino == named.st_ino && held.st_dev == named.st_dev;
-}
-
-/* GR_OK; GR_NOTHING: another holds it; GR_ERR_IO. */
-static int try_lock(struct lock *lock)
-{
-	int why;
-
-	lock->fd = open(lock->path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
-	if (lock->fd < 0)
-		return GR_ERR_IO;
-	if (flock(lock->fd, LOCK_EX | LOCK_NB) == 0) {
-		if (is_still_there(lock))
-			return GR_OK;
-		why = EWOULDBLOCK;
-	} else {
-		why = errno;
-	}
-	close(lock->fd);
-	lock->fd = -1;
-	return why == EWOULDBLOCK || why == EINTR ? GR_NOTHING : GR_ERR_IO;
-}
-
-/* GR_OK; GR_ERR_IO: there can be no file; GR_ERR_TIMEOUT. */
-static int lock_file(struct lock *lock, const char *path, int wait_s, double *waited_s)
-{
-	int64_t start = gr_clock_now(&gr_clock_monotonic);
-	bool told = false;
-
-	lock->fd = -1;
-	if (asprintf(&lock->path, "%s.lock", path) < 0) {
-		lock->path = NULL;
-		return GR_ERR_IO;
-	}
-	for (;;) {
-		const struct timespec pause = { 0, POLL_NS };
-		int result = try_lock(lock);
-		int64_t waited = gr_clock_now(&gr_clock_monotonic) - start;
-
-		if (told)
-			*waited_s = (double)waited * 1e-9;
-		if (result != GR_NOTHING)
-			return result;
-		if (waited > wait_s * GR_NS_PER_S)
-			return GR_ERR_TIMEOUT;
-		if (!told)
-			gr_notice("surfels: another process bakes %s; waiting for it, %d s at most",
-				  path, wait_s);
-		told = true;
-		nanosleep(&pause, NULL);
-	}
-}
-
-static void unlock_file(struct lock *lock)
-{
-	if (lock->path && lock->fd >= 0) {
-		/* before it is let go: whoever waits sees that this one is no more */
-		unlink(lock->path);
-		close(lock->fd);
-	}
-	free(lock->path);
-}
-
 /* --- getting a set --- */
+
+enum place { PLACE_BESIDE, PLACE_CACHE, PLACES };
 
 struct request {
 	const struct surfel_store *store;
 	struct surfel_set **out;
-	const struct scene *scene;
-	const struct scene_file *file;
-	const struct surfel_bake_params *params;
 	struct gr_diag *diag;
 	struct surfel_store_done *done;
+	const char *places[PLACES]; /* in the order in which they are tried; NULL: none */
+	struct surfel_lock lock;
 	uint8_t key[SURFEL_KEY_BYTES];
 };
 
 /* GR_OK when a file could be used. */
 static int read_either(struct request *r, struct gr_diag *diag)
 {
-	const char *const places[2] = { r->store->beside, r->store->cache };
-
-	for (int i = 0; i < 2; i++) {
-		int result = places[i] ? surfel_file_read(r->out, r->key, places[i], diag)
-				       : GR_NOTHING;
+	for (int i = 0; i < PLACES; i++) {
+		int result = r->places[i] ? surfel_file_read(r->out, r->key, r->places[i], diag)
+					  : GR_NOTHING;
 
 		if (result == GR_OK)
-			r->done->path = places[i];
+			r->done->path = r->places[i];
 		if (result == GR_OK || result == GR_ERR_NOMEM)
 			return result;
 	}
 	return GR_NOTHING;
 }
 
-/* Of the places the first in which a lock can be had: it can be written. */
-static int choose_place(struct request *r, struct lock *lock, const char **out_path)
+static void note_unwritable(struct request *r, const char *path, int why, enum gr_severity severity)
 {
-	const char *const places[2] = { r->store->beside, r->store->cache };
-	int result = GR_ERR_IO;
-
-	*out_path = NULL;
-	for (int i = 0; i < 2 && result == GR_ERR_IO; i++) {
-		if (!places[i])
-			continue;
-		if (i == 1)
-			make_folder(places[i]);
-		result = lock_file(lock, places[i], r->store->wait_s, &r->done->waited_s);
-		if (result == GR_OK) {
-			*out_path = places[i];
-		} else {
-			int why = errno;
-
-			free(lock->path);
-			lock->path = NULL;
-			gr_diag_add(r->diag, result == GR_ERR_TIMEOUT ? GR_DIAG_WARNING : GR_DIAG_NOTE,
-				    places[i], 0, NULL, "%s",
-				    result == GR_ERR_TIMEOUT
-					    ? "another process still bakes it; baking without keeping"
-					    : strerror(why));
-		}
-	}
-	return result;
+	gr_diag_add(r->diag, severity, path, 0, NULL, "cannot be written: %s", strerror(why));
 }
 
-static int bake_and_keep(struct request *r, const char *path)
+/*
+ * Whether a file can be kept at a place, which begins with its lock. GR_OK;
+ * GR_ERR_IO: not there; GR_ERR_TIMEOUT: somebody else bakes it, longer than wait_s.
+ */
+static int claim(struct request *r, int place, int wait_s)
 {
-	int result = surfel_bake(r->out, r->scene, r->file, r->params, r->diag);
+	const char *path = r->places[place];
+	int result, why;
 
-	if (result != GR_OK)
-		return result;
-	r->done->baked = true;
-	if (!path) {
-		/* a scene without a file has no place, and asks for none */
-		if (r->store->beside)
-			gr_diag_add(r->diag, GR_DIAG_WARNING, r->store->beside, 0, NULL,
-				    "cannot be written, and neither can a cache: baked again at every start");
-	} else if (surfel_file_write(*r->out, r->key, path) == GR_OK) {
-		r->done->path = path;
-	} else {
-		gr_diag_add(r->diag, GR_DIAG_WARNING, path, 0, NULL, "cannot be written: %s",
-			    strerror(errno));
+	if (place == PLACE_CACHE)
+		make_folder(path);
+	result = surfel_lock_take(&r->lock, path, wait_s);
+	why = errno;
+	r->done->waited_s += r->lock.waited_s;
+	if (result == GR_OK)
+		return GR_OK;
+	if (result == GR_ERR_TIMEOUT)
+		gr_diag_add(r->diag, GR_DIAG_WARNING, path, 0, NULL,
+			    "%s has been baking it for more than %d s (it holds %s.lock); not waited "
+			    "for any longer",
+			    r->lock.holder, wait_s, path);
+	else
+		note_unwritable(r, path, why, r->store->one_place ? GR_DIAG_ERROR : GR_DIAG_NOTE);
+	surfel_lock_give_back(&r->lock);
+	return result == GR_ERR_NOMEM ? GR_ERR_IO : result;
+}
+
+/*
+ * The first place from `from` on that can be claimed, PLACES: none. Only the
+ * first that answers is waited for; who has waited bakes now, come what may.
+ */
+static int claim_from(struct request *r, int from, int wait_s)
+{
+	for (int place = from; place < PLACES; place++) {
+		int result = r->places[place] ? claim(r, place, wait_s) : GR_ERR_IO;
+
+		if (result == GR_OK)
+			return place;
+		if (result == GR_ERR_TIMEOUT)
+			wait_s = 0;
 	}
-	return GR_OK;
+	return PLACES;
+}
+
+static void warn_not_kept(struct request *r)
+{
+	const char *path = r->places[PLACE_BESIDE];
+
+	/* a scene without a file has no place, and asks for none; of one place all is said */
+	if (!path || r->store->one_place)
+		return;
+	gr_diag_add(r->diag, GR_DIAG_WARNING, path, 0, NULL, "%s",
+		    r->places[PLACE_CACHE]
+			    ? "is not kept, nor in the cache: it is baked again at every start"
+			    : "is not kept, and there is no cache (none of CACHE_DIRECTORY, "
+			      "XDG_CACHE_HOME and HOME names a folder): it is baked again at every start");
+}
+
+/* A lock does not say that there is room: what cannot be written here is tried at the next place. */
+static void keep(struct request *r, int place)
+{
+	while (place < PLACES) {
+		const char *path = r->places[place];
+
+		if (surfel_file_write(*r->out, r->key, path) == GR_OK) {
+			r->done->path = path;
+			return;
+		}
+		note_unwritable(r, path, errno,
+				r->store->one_place ? GR_DIAG_WARNING : GR_DIAG_NOTE);
+		surfel_lock_give_back(&r->lock);
+		place = claim_from(r, place + 1, 0);
+	}
+	warn_not_kept(r);
+}
+
+int surfel_store_read(const struct surfel_store *store, struct surfel_set **out,
+		      const struct scene *scene, const struct surfel_bake_params *params,
+		      struct gr_diag *diag, struct surfel_store_done *done)
+{
+	struct request r = { .store = store, .out = out, .diag = diag, .done = done,
+			     .places = { store->beside, store->cache } };
+
+	*out = NULL;
+	*done = (struct surfel_store_done){ 0 };
+	surfel_file_key(scene, params, r.key);
+	return read_either(&r, diag);
 }
 
 int surfel_store_get(const struct surfel_store *store, struct surfel_set **out,
@@ -287,11 +246,11 @@ int surfel_store_get(const struct surfel_store *store, struct surfel_set **out,
 		     struct surfel_store_done *done)
 {
 	struct surfel_store_done unasked;
-	struct request r = { store, out, scene, file, params, diag, done ? done : &unasked, { 0 } };
-	struct lock lock = { NULL, -1 };
+	struct request r = { .store = store, .out = out, .diag = diag,
+			     .places = { store->beside, store->cache },
+			     .done = done ? done : &unasked, .lock = SURFEL_LOCK };
 	struct gr_diag said = { 0 };
-	const char *path;
-	int result = GR_NOTHING;
+	int result = GR_NOTHING, place;
 
 	*out = NULL;
 	*r.done = (struct surfel_store_done){ 0 };
@@ -300,14 +259,20 @@ int surfel_store_get(const struct surfel_store *store, struct surfel_set **out,
 		result = read_either(&r, diag);
 	if (result == GR_OK || result == GR_ERR_NOMEM)
 		return result;
-	choose_place(&r, &lock, &path);
+	place = claim_from(&r, PLACE_BESIDE, store->wait_s);
 	/* who held the lock has baked meanwhile; what was wrong before has been said */
 	if (!store->force)
 		result = read_either(&r, &said);
 	gr_diag_finish(&said);
-	if (result == GR_NOTHING)
-		result = bake_and_keep(&r, path);
-	unlock_file(&lock);
+	if (result == GR_NOTHING && place == PLACES && store->one_place && diag->errors > 0)
+		result = GR_ERR_IO; /* nobody would have what is baked */
+	if (result == GR_NOTHING) {
+		result = surfel_bake(out, scene, file, params, diag);
+		r.done->baked = result == GR_OK;
+		if (result == GR_OK)
+			keep(&r, place);
+	}
+	surfel_lock_give_back(&r.lock);
 	return result;
 }
 

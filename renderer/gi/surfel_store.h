@@ -5,7 +5,8 @@
  * beside the scene that can be used.
  *
  * Several processes that start at once bake once: the first takes a lock, the
- * others wait for it and read its file.
+ * others wait for it and read its file. Where it cannot be written once it is
+ * baked (a full disk, a quota) the next place is tried; the set is used in any case.
  *
  * Thread safety: one thread calls. Reads the environment (the cache's place).
  */
@@ -20,6 +21,8 @@
 struct surfel_store {
 	char *beside;    /* file beside the scene; NULL: the scene has no path */
 	char *cache;     /* file in the cache; NULL: there is no place for one */
+	bool one_place;  /* the file is what is wanted: no cache, and GR_ERR_IO instead of a bake
+			  * when it cannot be written there */
 	bool force;      /* bake, whatever there is */
 	int wait_s;      /* most */
 };
@@ -43,13 +46,18 @@ struct surfel_store_done {
 /*
  * The set from a file that fits, or baked and kept. That a file is stale or
  * damaged, that none can be written, and that another process is waited for, is
- * said in diag, or in the log while it waits; none of it is an error. As
- * surfel_bake otherwise. done may be NULL.
+ * said in diag, or in the log while it waits; none of it is an error but as
+ * one_place says. As surfel_bake otherwise. done may be NULL.
  */
 int surfel_store_get(const struct surfel_store *store, struct surfel_set **out,
 		     const struct scene *scene, const struct scene_file *file,
 		     const struct surfel_bake_params *params, struct gr_diag *diag,
 		     struct surfel_store_done *done);
+
+/* Only what is there: GR_OK, GR_NOTHING, GR_ERR_NOMEM. Why a file is not used is said in diag. */
+int surfel_store_read(const struct surfel_store *store, struct surfel_set **out,
+		      const struct scene *scene, const struct surfel_bake_params *params,
+		      struct gr_diag *diag, struct surfel_store_done *done);
 
 /* All of the above with the usual places, what there is to say logged. */
 int surfels_load_or_bake(struct surfel_set **out, const struct scene *scene,

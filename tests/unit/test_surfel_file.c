@@ -1,16 +1,11 @@
 /* Bake files: what is written comes back; whatever was changed is refused, with a reason. */
 #include "base/result.h"
 #include "renderer/gi/surfel_file.h"
-#include "renderer/gi/surfel_store.h"
 #include "tools/bench/room.h"
 #include "tests/unit/unit.h"
 
-#include <fcntl.h>
 #include <math.h>
 #include <sodium.h>
-#include <signal.h>
-#include <sys/file.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 static struct scene *scene;
@@ -220,177 +215,6 @@ static void hostile(void **state)
 	free(bytes);
 }
 
-/* --- the store --- */
-
-static struct scene_file named(const char *path)
-{
-	return (struct scene_file){ .path = (char *)(uintptr_t)path };
-}
-
-static void bakes_once(void **state)
-{
-	char scene_path[128], kept[128];
-	struct scene_file file;
-	struct surfel_store store;
-	struct surfel_store_done done;
-	struct gr_diag diag = { 0 };
-	struct surfel_set *found;
-
-	(void)state;
-	snprintf(scene_path, sizeof scene_path, "%s/my.scene", folder);
-	snprintf(kept, sizeof kept, "%s/my.surfels", folder);
-	file = named(scene_path);
-	assert_int_equal(surfel_store_init(&store, &file), GR_OK);
-	assert_string_equal(store.beside, kept);
-	for (int round = 0; round < 4; round++) {
-		bool damaged = round == 2;
-
-		if (damaged) {
-			int fd = open(kept, O_WRONLY);
-
-			assert_int_equal(pwrite(fd, "x", 1, 1000), 1);
-			close(fd);
-		}
-		assert_int_equal(surfel_store_get(&store, &found, scene, NULL, &coarse, &diag, &done),
-				 GR_OK);
-		assert_int_equal(done.baked, round == 0 || damaged);
-		assert_string_equal(done.path, kept);
-		assert_int_equal(diag.count, round >= 2);
-		assert_int_equal(surfel_set_hash(found), surfel_set_hash(set));
-		surfel_set_destroy(&found);
-	}
-	gr_diag_finish(&diag);
-	/* nothing else is left lying about */
-	assert_int_equal(unlink(kept), 0);
-	snprintf(kept, sizeof kept, "%s/my.surfels.lock", folder);
-	assert_int_not_equal(access(kept, F_OK), 0);
-	surfel_store_finish(&store);
-}
-
-static void goes_to_the_cache(void **state)
-{
-	char scene_path[128], cache[160];
-	struct scene_file file;
-	struct surfel_store store;
-	struct surfel_store_done done;
-	struct gr_diag diag = { 0 };
-	struct surfel_set *found;
-
-	(void)state;
-	/* a folder that is none cannot be written, by root neither */
-	snprintf(scene_path, sizeof scene_path, "%s/a.surfels/my.scene", folder);
-	snprintf(cache, sizeof cache, "%s/cache/grotto", folder);
-	setenv("CACHE_DIRECTORY", cache, 1);
-	file = named(scene_path);
-	assert_int_equal(surfel_store_init(&store, &file), GR_OK);
-	assert_int_equal(strncmp(store.cache, cache, strlen(cache)), 0);
-	for (int round = 0; round < 2; round++) {
-		assert_int_equal(surfel_store_get(&store, &found, scene, NULL, &coarse, &diag, &done),
-				 GR_OK);
-		assert_int_equal(done.baked, round == 0);
-		assert_string_equal(done.path, store.cache);
-		surfel_set_destroy(&found);
-	}
-	unlink(store.cache);
-	rmdir(cache);
-	*strrchr(cache, '/') = 0;
-	rmdir(cache);
-	/* and without one: still a set, and a warning */
-	unsetenv("CACHE_DIRECTORY");
-	free(store.cache);
-	store.cache = NULL;
-	gr_diag_finish(&diag);
-	diag = (struct gr_diag){ 0 };
-	assert_int_equal(surfel_store_get(&store, &found, scene, NULL, &coarse, &diag, &done), GR_OK);
-	assert_null(done.path);
-	assert_true(diag.warnings > 0);
-	surfel_set_destroy(&found);
-	gr_diag_finish(&diag);
-	surfel_store_finish(&store);
-}
-
-/* Four processes at once: one bakes, three wait and read. */
-static void four_at_once(void **state)
-{
-	struct surfel_bake_params params = coarse;
-	char path[128];
-	int baked = 0, waited = 0;
-	pid_t children[4];
-
-	(void)state;
-	params.links = 1024;
-	params.spacing_m = 0.3f;
-	snprintf(path, sizeof path, "%s/four.surfels", folder);
-	for (int i = 0; i < 4; i++) {
-		children[i] = fork();
-		if (children[i] == 0) {
-			struct surfel_store store;
-			struct surfel_store_done done;
-			struct surfel_set *found;
-			struct gr_diag diag = { 0 };
-
-			if (surfel_store_at(&store, path) != GR_OK ||
-			    surfel_store_get(&store, &found, scene, NULL, &params, &diag, &done) !=
-				    GR_OK)
-				_exit(99);
-			_exit((done.baked ? 1 : 0) + (done.waited_s > 0.02 ? 2 : 0));
-		}
-	}
-	for (int i = 0; i < 4; i++) {
-		int status;
-
-		assert_int_equal(waitpid(children[i], &status, 0), children[i]);
-		assert_true(WIFEXITED(status) && WEXITSTATUS(status) < 4);
-		baked += WEXITSTATUS(status) & 1;
-		waited += WEXITSTATUS(status) >> 1;
-	}
-	printf("# 4 processes at once: %d baked, %d waited\n", baked, waited);
-	assert_int_equal(baked, 1);
-	unlink(path);
-}
-
-/* One that never ends is not waited for without end. */
-static void wait_is_bounded(void **state)
-{
-	struct surfel_store_done done;
-	struct gr_diag diag = { 0 };
-	struct surfel_store store;
-	struct surfel_set *found;
-	char path[128];
-	int pipe_fd[2];
-	pid_t child;
-	char byte;
-
-	(void)state;
-	snprintf(path, sizeof path, "%s/stuck.surfels", folder);
-	assert_int_equal(pipe(pipe_fd), 0);
-	child = fork();
-	if (child == 0) {
-		char lock[160];
-		int fd;
-
-		snprintf(lock, sizeof lock, "%s.lock", path);
-		fd = open(lock, O_RDWR | O_CREAT, 0644);
-		if (fd < 0 || flock(fd, LOCK_EX) != 0 || write(pipe_fd[1], "r", 1) != 1)
-			_exit(1);
-		pause();
-		_exit(0);
-	}
-	assert_int_equal(read(pipe_fd[0], &byte, 1), 1);
-	assert_int_equal(surfel_store_at(&store, path), GR_OK);
-	store.wait_s = 1;
-	assert_int_equal(surfel_store_get(&store, &found, scene, NULL, &coarse, &diag, &done), GR_OK);
-	assert_true(done.baked && !done.path && done.waited_s >= 1 && done.waited_s < 5);
-	surfel_set_destroy(&found);
-	surfel_store_finish(&store);
-	gr_diag_finish(&diag);
-	kill(child, SIGKILL);
-	waitpid(child, NULL, 0);
-	close(pipe_fd[0]);
-	close(pipe_fd[1]);
-	unlink(in_folder("stuck.surfels.lock"));
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -399,10 +223,6 @@ int main(void)
 		cmocka_unit_test(flipped_bit),
 		cmocka_unit_test(other_version_or_scene),
 		cmocka_unit_test(hostile),
-		cmocka_unit_test(bakes_once),
-		cmocka_unit_test(goes_to_the_cache),
-		cmocka_unit_test(four_at_once),
-		cmocka_unit_test(wait_is_bounded),
 	};
 
 	return cmocka_run_group_tests(tests, set_up, tear_down);
