@@ -98,7 +98,8 @@ static bool sound(const struct reference_options *o, int words)
 
 int command_reference(int argc, char **argv)
 {
-	struct reference_options o = { .samples = 256, .seed = 1, .bounces = 64 };
+	struct reference_options o = { .samples = 256, .seed = 1, .bounces = 64,
+				       .keep_every_s = 60 };
 	const struct cli_option options[] = {
 		{ "camera", 'c', CLI_TEXT, &o.camera, 0, 0, "NAME",
 		  "a camera of the scene file (the first)" },
@@ -121,6 +122,8 @@ int command_reference(int argc, char **argv)
 		  "lamps are spheres of their radius, not points" },
 		{ "resume", 'r', CLI_TEXT, &o.resume, 0, 0, "FILE",
 		  "go on from this file if it is there, and keep the sums in it" },
+		{ "keep-every", 0, CLI_INT, &o.keep_every_s, 1, 86400, "SECONDS",
+		  "how often the sums are written while it traces (60)" },
 		{ "out", 'o', CLI_TEXT, &o.out, 0, 0, "FILE.exr",
 		  "radiance, standard errors, indirect light" },
 		{ "png", 0, CLI_TEXT, &o.png, 0, 0, "FILE", "as the scene's tone curve shows it" },

@@ -13,7 +13,7 @@ struct reference_options {
 	const char *points, *points_out;
 	bool surfels, soft_lamps;
 	int size[2]; /* 0: the camera's or the wall's */
-	int samples, seed, threads, bounces;
+	int samples, seed, threads, bounces, keep_every_s;
 	float until_percent; /* 0: all samples */
 };
 
@@ -26,6 +26,7 @@ struct reference_run {
 	struct reference_params params;
 	struct progress progress;
 	bool stopped; /* somebody asked for the end */
+	int64_t keep_ns;  /* when the sums are to be written next */
 };
 
 /* The view that the options choose. GR_ERR_CONFIG, told on stderr. */

@@ -90,15 +90,31 @@ static int write_files(struct reference_run *run, const struct reference_film *f
 	return result;
 }
 
+/* So that a crash costs little. A failure has been logged, and is one only if it lasts to the end. */
+static void keep(void *ctx, const struct reference_film *film)
+{
+	struct reference_run *run = ctx;
+	int64_t now = gr_clock_now(&gr_clock_monotonic);
+
+	if (now < run->keep_ns)
+		return;
+	reference_film_save(film, run->options->resume);
+	run->keep_ns = gr_clock_now(&gr_clock_monotonic) +
+		       run->options->keep_every_s * GR_NS_PER_S;
+}
+
 static void print_figures(const struct reference_run *run, const struct reference_film *film,
 			  double seconds)
 {
-	char time[32];
+	double error = reference_film_error(film);
+	char time[32], known[32] = "not known";
 
-	printf("%s: %dx%d, %d samples a pixel, standard error %.3f %%, %s, %.2f million rays/s\n",
+	if (error >= 0)
+		snprintf(known, sizeof known, "%.3f %%", 100 * error);
+	printf("%s: %dx%d, %d samples a pixel, standard error %s, %s, %.2f million rays/s\n",
 	       run->options->out ? run->options->out : run->options->png, film->width, film->height,
-	       film->samples, 100 * reference_film_error(film),
-	       progress_time(seconds, time, sizeof time), seconds > 0 ? (double)reference_rays(run->reference) / seconds * 1e-6 : 0);
+	       film->samples, known, progress_time(seconds, time, sizeof time),
+	       seconds > 0 ? (double)reference_rays(run->reference) / seconds * 1e-6 : 0);
 	if (run->stopped)
 		printf("ended early%s\n", run->options->resume ? "; the same command goes on" : "");
 	if (film->nonfinite)
@@ -119,6 +135,8 @@ int reference_picture(struct reference_run *run)
 	if (result != GR_OK)
 		goto out;
 	start = gr_clock_now(&gr_clock_monotonic);
+	run->keep_ns = start + o->keep_every_s * GR_NS_PER_S;
+	run->params.keep = o->resume ? keep : NULL;
 	progress_start(&run->progress, "picture");
 	result = reference_render(run->reference, &view, &run->params, &film);
 	progress_end(&run->progress);

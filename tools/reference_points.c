@@ -3,6 +3,7 @@
 
 #include "base/result.h"
 #include "renderer/gi/surfel_bake.h"
+#include "renderer/gi/surfel_store.h"
 #include "tools/say.h"
 
 #include <ctype.h>
@@ -127,11 +128,30 @@ static bool show_bake(void *ctx, const char *stage, double done, double seconds_
 	return !run->stopped;
 }
 
-/* The places alone: what surfels are baked for beside is as little as may be. */
-static int place_surfels(struct reference_run *run, struct points *points)
+/* Those that are baked already. GR_NOTHING: none, or of another scene. */
+static int read_surfels(struct reference_run *run, struct surfel_set **out)
 {
 	struct surfel_bake_params params;
-	struct surfel_set *set = NULL;
+	struct surfel_store_done done;
+	struct surfel_store store;
+	struct gr_diag diag = { 0 };
+	int result = surfel_store_init(&store, run->file);
+
+	surfel_bake_params_of(run->file, &params);
+	if (result == GR_OK)
+		result = surfel_store_read(&store, out, run->scene, &params, &diag, &done);
+	say_diag(&diag);
+	gr_diag_finish(&diag);
+	if (result == GR_OK)
+		printf("%s: %zu surfels\n", done.path, (*out)->count);
+	surfel_store_finish(&store);
+	return result;
+}
+
+/* The places alone: what surfels are baked for beside is as little as may be. */
+static int bake_surfels(struct reference_run *run, struct surfel_set **out)
+{
+	struct surfel_bake_params params;
 	struct gr_diag diag = { 0 };
 	int result;
 
@@ -143,10 +163,20 @@ static int place_surfels(struct reference_run *run, struct points *points)
 	params.progress = show_bake;
 	params.ctx = run;
 	progress_start(&run->progress, "surfels");
-	result = surfel_bake(&set, run->scene, run->file, &params, &diag);
+	result = surfel_bake(out, run->scene, run->file, &params, &diag);
 	progress_end(&run->progress);
 	say_diag(&diag);
 	gr_diag_finish(&diag);
+	return result;
+}
+
+static int place_surfels(struct reference_run *run, struct points *points)
+{
+	struct surfel_set *set = NULL;
+	int result = read_surfels(run, &set);
+
+	if (result == GR_NOTHING)
+		result = bake_surfels(run, &set);
 	for (size_t i = 0; result == GR_OK && i < set->count; i++) {
 		struct reference_point *point = grow(points);
 

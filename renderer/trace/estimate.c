@@ -18,8 +18,7 @@ struct pass {
 	struct estimate_sums *sums;
 	const struct path_scene *scene;
 	const struct reference_params *params;
-	estimate_sample sample;
-	const void *ctx;
+	const struct estimate_work *todo;
 	uint64_t first_set;
 	size_t sets;
 	double (*results)[6]; /* a set of an item: sums of total and indirect */
@@ -50,6 +49,9 @@ double estimate_relative_error(const struct estimate_sums *sums)
 		variance += e * e;
 		mean += sums->total[i] / sums->samples;
 	}
+	/* every sample was black: nothing says that there is light, and nothing is missing */
+	if (mean == 0.0 && variance == 0.0 && sums->nonfinite == 0)
+		return (double)sums->samples * (double)sums->items >= ESTIMATE_BLACK_SAMPLES ? 0.0 : -1.0;
 	if (!(mean > 0.0))
 		return -1.0;
 	return sqrt(variance / (3.0 * (double)sums->items)) / (mean / (3.0 * (double)sums->items));
@@ -68,7 +70,7 @@ static void take_set(struct pass *pass, size_t piece)
 		struct path_light light;
 
 		sampler_point(&sampler, i);
-		light = pass->sample(pass->ctx, pass->scene, item, &sampler);
+		light = pass->todo->sample(pass->todo->ctx, pass->scene, item, &sampler);
 		rays += light.rays;
 		if (!v3_finite(light.total) || !v3_finite(light.indirect)) {
 			atomic_fetch_add(&pass->nonfinite, 1);
@@ -156,10 +158,9 @@ static int run_pass(struct pass *pass, size_t most_sets)
 }
 
 int estimate_run(struct estimate_sums *sums, const struct path_scene *scene,
-		 const struct reference_params *params, estimate_sample sample, const void *ctx)
+		 const struct reference_params *params, const struct estimate_work *todo)
 {
-	struct pass pass = { .sums = sums, .scene = scene, .params = params, .sample = sample,
-			     .ctx = ctx };
+	struct pass pass = { .sums = sums, .scene = scene, .params = params, .todo = todo };
 	size_t sets;
 	int result = GR_OK;
 
@@ -183,6 +184,8 @@ int estimate_run(struct estimate_sums *sums, const struct path_scene *scene,
 			break;
 		result = run_pass(&pass, sets);
 		pass.error = estimate_relative_error(sums);
+		if (result == GR_OK && todo->after_pass)
+			todo->after_pass(todo->after_ctx, sums);
 		if (result == GR_OK && !tell(&pass, 0.0) && sums->samples < pass.samples)
 			result = GR_NOTHING;
 	}

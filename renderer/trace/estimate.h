@@ -21,15 +21,29 @@ struct estimate_sums {
 typedef struct path_light (*estimate_sample)(const void *ctx, const struct path_scene *scene,
 					     size_t item, const struct sampler *sampler);
 
+struct estimate_work {
+	estimate_sample sample;
+	const void *ctx;
+	/* Calling thread, when every item has the same samples; may be NULL. */
+	void (*after_pass)(void *ctx, const struct estimate_sums *sums);
+	void *after_ctx;
+};
+
 /*
  * Goes on from sums->samples as params say. GR_OK, GR_NOTHING when progress
  * stopped it, GR_ERR_NOMEM.
  */
 int estimate_run(struct estimate_sums *sums, const struct path_scene *scene,
-		 const struct reference_params *params, estimate_sample sample, const void *ctx);
+		 const struct reference_params *params, const struct estimate_work *todo);
 /* Standard error of the mean of one value; 0 before two sets. */
 double estimate_error(double total, double squares, int samples);
-/* rms standard error over the mean, of all; negative: not known, with fewer than two sets or all black. */
+/*
+ * rms standard error over the mean, of all; negative: not known, with fewer than
+ * two sets. All black: 0 once so many samples of all items together found
+ * nothing (what more than one in 20,000 would find is then seen with 95 %), not
+ * known before, nor where a sample was not finite.
+ */
+#define ESTIMATE_BLACK_SAMPLES 65536
 double estimate_relative_error(const struct estimate_sums *sums);
 
 #endif

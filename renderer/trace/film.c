@@ -22,6 +22,7 @@ double reference_film_error(const struct reference_film *film)
 		.samples = film->samples,
 		.total = film->radiance,
 		.squares = film->squares,
+		.nonfinite = film->nonfinite,
 	};
 
 	return estimate_relative_error(&sums);

@@ -120,9 +120,27 @@ static int film_start(struct reference_film *film, const struct reference_view *
 	return GR_OK;
 }
 
+/* Lets the caller see the film while it grows. */
+struct keeper {
+	const struct reference_params *params;
+	struct reference_film *film;
+};
+
+static void keep_film(void *ctx, const struct estimate_sums *sums)
+{
+	const struct keeper *keeper = ctx;
+
+	keeper->film->samples = sums->samples;
+	keeper->film->nonfinite = sums->nonfinite;
+	keeper->params->keep(keeper->params->ctx, keeper->film);
+}
+
 int reference_render(struct reference *reference, const struct reference_view *view,
 		     const struct reference_params *params, struct reference_film *film)
 {
+	struct keeper keeper = { params, film };
+	const struct estimate_work todo = { sample_pixel, view, params->keep ? keep_film : NULL,
+					    &keeper };
 	struct estimate_sums sums;
 	uint8_t key[32];
 	int result;
@@ -143,7 +161,7 @@ int reference_render(struct reference *reference, const struct reference_view *v
 		.indirect_squares = film->indirect_squares,
 		.nonfinite = film->nonfinite,
 	};
-	result = estimate_run(&sums, &reference->scene, params, sample_pixel, view);
+	result = estimate_run(&sums, &reference->scene, params, &todo);
 	reference->rays = sums.rays;
 	film->samples = sums.samples;
 	film->nonfinite = sums.nonfinite;
@@ -194,6 +212,7 @@ static void fill_points(const struct estimate_sums *sums, struct reference_point
 int reference_irradiance(struct reference *reference, const struct reference_params *params,
 			 struct reference_point *points, size_t count, uint64_t *out_nonfinite)
 {
+	const struct estimate_work todo = { .sample = sample_point, .ctx = points };
 	struct estimate_sums sums = { .items = count };
 	double *values;
 	int result;
@@ -210,7 +229,7 @@ int reference_irradiance(struct reference *reference, const struct reference_par
 	sums.indirect = values + 6 * count;
 	sums.indirect_squares = values + 9 * count;
 	prepare(reference, params);
-	result = estimate_run(&sums, &reference->scene, params, sample_point, points);
+	result = estimate_run(&sums, &reference->scene, params, &todo);
 	reference->rays = sums.rays;
 	if (result == GR_OK || result == GR_NOTHING)
 		fill_points(&sums, points);

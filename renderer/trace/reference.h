@@ -37,11 +37,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+struct reference_film;
+
 struct reference_params {
 	uint64_t seed;
 	int samples;       /* most a pixel or point; counted up to whole sets, at least two */
 	double until_error; /* stop when the rms standard error over the mean is below; 0: all samples.
-			     * At least 64 samples are taken */
+			     * At least 64 samples are taken, of what is black 65536 of all pixels */
 	int max_bounces;   /* times that light may be reflected or scattered before the first surface; 0..1024 */
 	int threads;       /* 0: all cores */
 	bool soft_lamps;
@@ -52,6 +54,11 @@ struct reference_params {
 	 * over all pixels left is handed out.
 	 */
 	bool (*progress)(void *ctx, double done, double seconds_left, double error);
+	/*
+	 * Of reference_render, from the calling thread: every time when all pixels have
+	 * the same number of samples, the film as it is, to be kept. NULL: not.
+	 */
+	void (*keep)(void *ctx, const struct reference_film *film);
 	void *ctx;
 };
 #define REFERENCE_PARAMS \
@@ -104,7 +111,7 @@ struct reference_film {
  */
 int reference_render(struct reference *reference, const struct reference_view *view,
 		     const struct reference_params *params, struct reference_film *film);
-/* rms standard error over the mean of the radiance; negative: not known (fewer than two sets, all black). */
+/* rms standard error over the mean of the radiance; negative: not known (fewer than two sets, few and all black). */
 double reference_film_error(const struct reference_film *film);
 /* To pictures of 3 channels; each may be NULL. error: standard error of the mean, 0 before two sets. */
 int reference_film_images(const struct reference_film *film, struct image *radiance,

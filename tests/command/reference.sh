@@ -80,4 +80,34 @@ kill -INT $pid
 wait $pid || fail "interrupted: exit $?: $(cat "$folder/long.log")"
 grep -q "ended early" "$folder/long.log" || fail "interrupted: $(cat "$folder/long.log")"
 [ -s "$folder/long" ] && [ -s "$folder/long.exr" ] || fail "interrupted: no files"
+
+# A crash or a loss of power: what was kept meanwhile is whole, and is gone on from.
+"$grotto" reference "$scene" --size 24x24 -n 100000000 --resume "$folder/crash" --keep-every 1 \
+	-o "$folder/crash.exr" >"$folder/crash.log" 2>&1 &
+pid=$!
+sleep 3
+kill -KILL $pid
+wait $pid 2>/dev/null
+[ ! -e "$folder/crash.exr" ] || fail "killed: wrote a picture"
+said=$("$grotto" reference "$scene" --size 24x24 -n 32 --resume "$folder/crash" -o "$folder/crash.exr" 2>&1) ||
+	fail "after a crash: $said"
+case $said in *"goes on from "*" samples"*) ;; *) fail "after a crash: begins anew: $said" ;; esac
+
+# Nothing shines: black is known to be black before all samples are taken.
+sed -e 's/^name = .*/name = "dark";/' -e "s|^model = .*|model = \"$(cd "$srcdir" && pwd)/scenes/cornell-spot.gltf\";|" \
+	-e 's/318.31/0.0/g' "$scene" >"$folder/dark.scene"
+said=$(timeout 60 "$grotto" reference "$folder/dark.scene" --size 24x24 -n 100000000 --until-error 1 \
+	-o "$folder/dark.exr" 2>&1) || fail "black: $said"
+case $said in *"128 samples a pixel, standard error 0.000 %"*) ;; *) fail "black: $said" ;; esac
+said=$("$grotto" reference "$folder/dark.scene" --size 24x24 -n 32 -o "$folder/dark.exr" 2>&1) || fail "black: $said"
+case $said in *"standard error not known"*) ;; *) fail "black, few samples: $said" ;; esac
+
+# Surfels that are baked are read; their places are those that are found without.
+said=$("$grotto" reference "$folder/dark.scene" -n 32 --bounces 0 --surfels --points-out "$folder/without.csv" 2>&1) ||
+	fail "surfels, none baked: $said"
+"$grotto" bake "$folder/dark.scene" >"$folder/dark.log" 2>&1 || fail "bake: $(cat "$folder/dark.log")"
+said=$("$grotto" reference "$folder/dark.scene" -n 32 --bounces 0 --surfels --points-out "$folder/with.csv" 2>&1) ||
+	fail "surfels, baked: $said"
+case $said in *"dark.surfels: "*" surfels"*) ;; *) fail "the bake was not read: $said" ;; esac
+cmp "$folder/without.csv" "$folder/with.csv" || fail "places of baked surfels are others"
 exit $failed
