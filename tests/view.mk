@@ -46,3 +46,10 @@ TESTS += tests/accuracy/test_backdrop
 tests_accuracy_test_backdrop_SOURCES = tests/accuracy/test_backdrop.c $(VIEW_TEST_SHARED)
 tests_accuracy_test_backdrop_CFLAGS = $(VIEW_TEST_CFLAGS)
 tests_accuracy_test_backdrop_LDADD = $(VIEW_TEST_LIBS)
+
+check_PROGRAMS += tests/accuracy/test_hard_scenes
+TESTS += tests/accuracy/test_hard_scenes
+tests_accuracy_test_hard_scenes_SOURCES = tests/accuracy/test_hard_scenes.c \
+	tests/accuracy/hard/model.c tests/accuracy/hard/model.h tests/unit/glb.h tests/unit/unit.h
+tests_accuracy_test_hard_scenes_CFLAGS = $(VIEW_TEST_CFLAGS)
+tests_accuracy_test_hard_scenes_LDADD = $(VIEW_TEST_LIBS)

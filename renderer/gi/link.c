@@ -160,7 +160,7 @@ static bool path_free(const struct build *b, const float from[3], const float be
 		for (int i = 0; i < 3; i++)
 			direction[i] /= length;
 		/* a little further than the bend, so that nothing fits between the segments */
-		if (rays_nearest(b->rays, points[s], direction, length * 1.0001f, hit))
+		if (rays_nearest_front(b->rays, points[s], direction, length * 1.0001f, hit))
 			return false;
 	}
 	return true;

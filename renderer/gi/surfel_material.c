@@ -134,7 +134,7 @@ void bake_follow(const struct bake *bake, struct v3 from, struct v3 way, uint64_
 
 		v3_put(from, at);
 		v3_put(way, to);
-		bool met = rays_nearest(bake->world.rays, at, to, INFINITY, &hit);
+		bool met = rays_nearest_front(bake->world.rays, at, to, INFINITY, &hit);
 		if (bounces > 0)
 			add_light(bake, met ? &hit : NULL, way, out);
 		if (!met)

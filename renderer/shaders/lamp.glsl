@@ -2,7 +2,7 @@
 struct Lamp {
 	vec4 position;  // scene, metres; w: radius of the source, metres
 	vec4 direction; // unit, where the light goes; w: 0 spot, 1 point, 2 directional
-	vec4 intensity; // rgb W/sr, directional W/m^2; 0 when off
+	vec4 intensity; // rgb W/sr, directional W/m^2; 0 when off; a: least distance, metres
 	vec4 cone;      // x: cos of the umbra's angle, y: cos of the penumbra's, z: 1/(y - x) or 0: hard
 	ivec4 maps;     // x: first layer of lamp_layers, y: layers, 1 or 6
 };
@@ -36,7 +36,7 @@ vec3 lamp_irradiance(Lamp lamp, vec3 p, out vec3 to_lamp, out float metres)
 	vec3 d = lamp.position.xyz - p;
 
 	// A surface inside the source gets what the source's own surface has.
-	metres = max(length(d), max(lamp.position.w, 1e-3));
+	metres = max(length(d), lamp.intensity.a);
 	to_lamp = d / metres;
 	return lamp.intensity.rgb * (lamp_cone(lamp, to_lamp) * medium_to_surface(metres) /
 				     (metres * metres));

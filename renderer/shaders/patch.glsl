@@ -13,7 +13,7 @@ struct Patch {
 
 layout(std140, binding = 5) uniform Patches {
 	ivec4 patch_count; // x
-	vec4 patch_map;    // of the hemicubes, x: half width at distance 1, y: pixels, z: near, metres
+	vec4 patch_map;    // of the hemicubes, x: half width at distance 1, y: pixels, z: near, w: lift off the surface, metres
 	Patch patches[PATCHES_MOST];
 };
 

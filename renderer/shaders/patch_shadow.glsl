@@ -32,7 +32,7 @@ float patch_visibility(Patch patch_, vec3 p, vec3 n)
 	float metres = length(d), c = dot(n, d);
 	float axial = max(max(a.x, a.y), local.z);
 	float sine = sqrt(max(metres * metres - c * c, 0.0)) / metres;
-	float lift = 3.0 * half_ * axial / pixels * sine + 1e-3;
+	float lift = 3.0 * half_ * axial / pixels * sine + patch_map.w;
 	vec3 at = patch_face_axes(local + lift * local_normal, face);
 	vec3 normal = patch_face_axes(local_normal, face);
 	// texels, and the depth there: reversed, affine in them on a plane

@@ -5,7 +5,7 @@ struct MapLayer {
 	mat4 clip;   // scene to the layer's clip space
 	vec4 extent; // x: half width at distance 1 (perspective) or metres; y: pixels;
 		     // z: 1 perspective; w: change of depth per 1/distance, or per metre
-	vec4 range;  // x: near, y: far, metres
+	vec4 range;  // x: near, y: far, z: lift off the surface; metres
 };
 
 // What one comparison needs: where the surface is in the layer and how its
@@ -19,14 +19,14 @@ struct ShadowPoint {
 // from: vector from the lamp to p, its length metres. The comparison reads 2 x 2
 // texels, so the plane's depth may be off by one and a half texels times its
 // slope: the point is lifted by so much, and no more (a shadow parts from what
-// throws it by up to that and 1 mm).
+// throws it by up to that and 1 mm, in small scenes less).
 ShadowPoint shadow_point(MapLayer layer, vec3 p, vec3 n, vec3 from, float metres)
 {
 	vec4 at = layer.clip * vec4(p, 1.0);
 	vec4 along = layer.clip * vec4(n, 0.0);
 	float c = dot(n, from);
 	float sine = sqrt(max(metres * metres - c * c, 0.0)) / metres;
-	float lift = 3.0 * layer.extent.x * at.w / layer.extent.y * sine + 1e-3;
+	float lift = 3.0 * layer.extent.x * at.w / layer.extent.y * sine + layer.range.z;
 	ShadowPoint s;
 
 	at += along * lift;

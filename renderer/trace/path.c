@@ -323,16 +323,6 @@ static bool scattered(struct path *path, struct v3 direction, float metres, floa
 }
 
 /*
- * Where two one-sided faces coincide, back to back, either may be found first;
- * what is there is the face that shows its front.
- */
-static bool behind_is_front(const struct path *path, const float from[3], const float along[3],
-			    const struct surface_hit *dark, float distance, struct ray_hit *out)
-{
-	return rays_nearest_drawn(path->scene->world.rays, from, along, distance + dark->lift, out);
-}
-
-/*
  * Follows a ray to the next vertex and takes the light that it meets.
  * pdf: as met_weight. false: the path ends.
  */
@@ -348,7 +338,7 @@ static bool travel(struct path *path, struct v3 direction, float pdf)
 	v3_put(direction, along);
 	if (!is_ray(path, from, along))
 		return false;
-	met = rays_nearest(scene->world.rays, from, along, INFINITY, &hit);
+	met = rays_nearest_front(scene->world.rays, from, along, INFINITY, &hit);
 	distance = met ? hit.distance : INFINITY;
 	if (scene->medium.extinction > 0.0f)
 		pair_of(path, PAIR_WAY, u);
@@ -363,8 +353,6 @@ static bool travel(struct path *path, struct v3 direction, float pdf)
 		return false;
 	}
 	world_hit(&scene->world, &hit, direction, &at);
-	if (at.dark && behind_is_front(path, from, along, &at, distance, &hit))
-		world_hit(&scene->world, &hit, direction, &at);
 	meet_emitter(path, &at, distance, direction, pdf);
 	return enter_surface(path, &at, direction);
 }

@@ -4,6 +4,7 @@
 #include "base/result.h"
 
 #include <embree3/rtcore.h>
+#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -190,6 +191,77 @@ bool rays_nearest(const struct rays *rays, const float origin[3], const float di
 	return nearest(rays, &context, origin, direction, max_distance, out);
 }
 
+/* Takes back a hit on the back of a one-sided triangle. */
+static void only_drawn(const struct RTCFilterFunctionNArguments *arguments)
+{
+	const struct query *query = (const struct query *)arguments->context;
+	const struct RTCRay *ray = (const struct RTCRay *)arguments->ray;
+	const struct RTCHit *hit = (const struct RTCHit *)arguments->hit;
+	float along = hit->Ng_x * ray->dir_x + hit->Ng_y * ray->dir_y + hit->Ng_z * ray->dir_z;
+
+	if (along > 0.0f && query->rays->one_sided[hit->primID])
+		arguments->valid[0] = 0;
+}
+
+bool rays_nearest_drawn(const struct rays *rays, const float origin[3], const float direction[3],
+			float max_distance, struct ray_hit *out)
+{
+	struct query query = { .rays = rays };
+
+	rtcInitIntersectContext(&query.context);
+	query.context.filter = only_drawn;
+	return nearest(rays, &query.context, origin, direction, max_distance, out);
+}
+
+/* How far behind the back of a face one that coincides with it may be found. */
+static float slack(const float origin[3], const float direction[3], float distance)
+{
+	float widest = 0.0f;
+
+	for (int i = 0; i < 3; i++)
+		widest = fmaxf(widest, fmaxf(fabsf(origin[i]),
+					     fabsf(origin[i] + distance * direction[i])));
+	return RAYS_ROUNDINGS * FLT_EPSILON * widest;
+}
+
+bool rays_nearest_front(const struct rays *rays, const float origin[3], const float direction[3],
+			float max_distance, struct ray_hit *out)
+{
+	struct ray_hit other;
+	float along = 0.0f;
+
+	if (!rays_nearest(rays, origin, direction, max_distance, out))
+		return false;
+	for (int i = 0; i < 3; i++)
+		along += out->normal[i] * direction[i];
+	if (along > 0.0f && rays->one_sided[out->triangle] &&
+	    rays_nearest_drawn(rays, origin, direction,
+			       out->distance + slack(origin, direction, out->distance), &other))
+		*out = other;
+	return true;
+}
+
+static void look_behind(const struct rays *rays, const struct ray_start *start, struct ray_met *met)
+{
+	struct ray_hit other;
+	float along = 0.0f;
+
+	if (!rays_nearest_drawn(rays, start->origin, start->direction,
+				met->distance + slack(start->origin, start->direction, met->distance),
+				&other))
+		return;
+	for (int i = 0; i < 3; i++)
+		along += other.normal[i] * start->direction[i];
+	*met = (struct ray_met){ other.distance, other.triangle, along > 0.0f };
+}
+
+static bool shows_back(const struct RTCRayHit *q)
+{
+	return q->hit.Ng_x * q->ray.dir_x + q->hit.Ng_y * q->ray.dir_y +
+		       q->hit.Ng_z * q->ray.dir_z >
+	       0;
+}
+
 #define AT_ONCE 64
 
 /*
@@ -218,10 +290,11 @@ static void nearest_some(const struct rays *rays, size_t count, const struct ray
 
 		out[k].distance = met ? r->ray.tfar : INFINITY;
 		out[k].triangle = met ? r->hit.primID : RAYS_NONE;
-		out[k].back = met && r->hit.Ng_x * r->ray.dir_x + r->hit.Ng_y * r->ray.dir_y +
-						     r->hit.Ng_z * r->ray.dir_z >
-					     0;
+		out[k].back = met && shows_back(r);
 	}
+	for (size_t k = 0; k < count; k++)
+		if (out[k].back && rays->one_sided[out[k].triangle])
+			look_behind(rays, &starts[k], &out[k]);
 }
 
 void rays_nearest_many(const struct rays *rays, size_t count, const struct ray_start *starts,
@@ -229,28 +302,6 @@ void rays_nearest_many(const struct rays *rays, size_t count, const struct ray_s
 {
 	for (size_t k = 0; k < count; k += AT_ONCE)
 		nearest_some(rays, count - k < AT_ONCE ? count - k : AT_ONCE, starts + k, out + k);
-}
-
-/* Takes back a hit on the back of a one-sided triangle. */
-static void only_drawn(const struct RTCFilterFunctionNArguments *arguments)
-{
-	const struct query *query = (const struct query *)arguments->context;
-	const struct RTCRay *ray = (const struct RTCRay *)arguments->ray;
-	const struct RTCHit *hit = (const struct RTCHit *)arguments->hit;
-	float along = hit->Ng_x * ray->dir_x + hit->Ng_y * ray->dir_y + hit->Ng_z * ray->dir_z;
-
-	if (along > 0.0f && query->rays->one_sided[hit->primID])
-		arguments->valid[0] = 0;
-}
-
-bool rays_nearest_drawn(const struct rays *rays, const float origin[3], const float direction[3],
-			float max_distance, struct ray_hit *out)
-{
-	struct query query = { .rays = rays };
-
-	rtcInitIntersectContext(&query.context);
-	query.context.filter = only_drawn;
-	return nearest(rays, &query.context, origin, direction, max_distance, out);
 }
 
 bool rays_blocked_along(const struct rays *rays, const float origin[3], const float direction[3],

@@ -40,7 +40,19 @@ static inline bool rays_valid(const float origin[3], const float direction[3])
 }
 bool rays_nearest(const struct rays *rays, const float origin[3], const float direction[3],
 		  float max_distance, struct ray_hit *out);
-/* Many rays, each to what it meets first, however far; finds what rays_nearest finds, sooner. */
+/*
+ * How far the same point found twice may lie apart, in rounding errors of its
+ * largest coordinate: a barycentric sum of three corners is off by up to about
+ * three, and Embree's distance by as many; the rest is room.
+ */
+#define RAYS_ROUNDINGS 24.0f
+/*
+ * As rays_nearest, but where two faces coincide, back to back, either may come
+ * first: it is the one that shows its front, or is two-sided. Unit direction.
+ */
+bool rays_nearest_front(const struct rays *rays, const float origin[3], const float direction[3],
+			float max_distance, struct ray_hit *out);
+/* Many rays of unit directions, however far; finds what rays_nearest_front finds, sooner. */
 #define RAYS_NONE UINT32_MAX
 struct ray_start {
 	float origin[3], direction[3];

@@ -13,12 +13,6 @@
 
 #include <float.h>
 
-/*
- * A barycentric sum of three corners is off by up to about 3 rounding errors of
- * the largest coordinate, and Embree's distance by as many; the rest is room.
- */
-#define WORLD_LIFT_ROUNDINGS 24.0f
-
 struct world {
 	const struct scene *scene;
 	struct rays *rays;
@@ -59,7 +53,7 @@ const struct scene_material *world_material(const struct world *world, unsigned 
  */
 static inline float world_lift(struct v3 a, struct v3 b, struct v3 c)
 {
-	return WORLD_LIFT_ROUNDINGS * FLT_EPSILON *
+	return RAYS_ROUNDINGS * FLT_EPSILON *
 	       larger_of(v3_widest(a), larger_of(v3_widest(b), v3_widest(c)));
 }
 

@@ -40,7 +40,7 @@ struct frame_block {
 struct lamp_record {
 	float position[4];
 	float direction[4];
-	float intensity[4];
+	float intensity[4]; /* a: surfaces nearer than this get what is there, metres */
 	float cone[4];
 	int32_t maps[4];
 };
@@ -50,7 +50,7 @@ struct map_layer {
 	float clip[16];  /* scene to clip space, x and y -1..1, depth 1 (near) .. 0 (far) */
 	float extent[4]; /* half width at distance 1, or metres; pixels; 1 perspective;
 			  * change of depth per 1/distance, ortho: per metre towards the eye */
-	float range[4];  /* near, far, metres */
+	float range[4];  /* near, far, how far points are lifted off their surface; metres */
 };
 
 /* Patch in shaders/patch.glsl. */

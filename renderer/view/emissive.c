@@ -12,8 +12,8 @@
 /* Sixteen patches of five faces: a quarter of a lamp's resolution is plenty for a soft edge. */
 #define MOST_PIXELS 256
 #define MARGIN_TEXELS 9
-/* What is nearer to the surface than this throws no shadow: the lamp's own frame. */
-#define PATCH_NEAR_M 2e-3
+/* What is nearer to the surface than so many least lengths throws no shadow: the lamp's own frame. */
+#define PATCH_NEAR 2
 
 struct emissive_stage {
 	const struct gl_mesh *mesh;
@@ -23,12 +23,13 @@ struct emissive_stage {
 	struct depth_maps maps;
 	unsigned buffer;
 	float min[3], max[3];
+	double least_m; /* map_least_length */
 	bool depth_old, rsm_old;
 };
 
 struct patch_block {
 	int32_t count[4];
-	float map[4]; /* half width at distance 1, pixels, near */
+	float map[4]; /* half width at distance 1; pixels; near, lift: metres */
 	struct patch_record patches[PATCHES_MAX];
 };
 
@@ -58,7 +59,7 @@ static double far_of(const struct emissive_stage *stage, const float origin[3])
 
 		sum += fmax(a, b) * fmax(a, b);
 	}
-	return sqrt(sum) * 1.001 + 2 * PATCH_NEAR_M;
+	return sqrt(sum) * 1.001 + 2 * PATCH_NEAR * stage->least_m;
 }
 
 static void fill_block(const struct emissive_stage *stage, struct patch_block *block)
@@ -69,7 +70,8 @@ static void fill_block(const struct emissive_stage *stage, struct patch_block *b
 	block->count[0] = patches->count;
 	block->map[0] = (float)map_half(stage->maps.pixels, MARGIN_TEXELS);
 	block->map[1] = (float)stage->maps.pixels;
-	block->map[2] = (float)PATCH_NEAR_M;
+	block->map[2] = (float)(PATCH_NEAR * stage->least_m);
+	block->map[3] = (float)stage->least_m;
 	for (int i = 0; i < patches->count; i++) {
 		const struct emissive_patch *p = &patches->patches[i];
 		struct patch_record *r = &block->patches[i];
@@ -108,6 +110,7 @@ int emissive_create(struct emissive_stage **out, const struct emissive_patches *
 	stage->rsm_old = rsm != NULL;
 	memcpy(stage->min, scene->min, sizeof(stage->min));
 	memcpy(stage->max, scene->max, sizeof(stage->max));
+	stage->least_m = map_least_length(scene->min, scene->max);
 	result = depth_maps_init(&stage->maps, pixels, FACES * patches->count);
 	if (result != GR_OK) {
 		emissive_destroy(&stage);
@@ -151,7 +154,8 @@ static void face_view(const struct emissive_stage *stage, const struct map_basis
 		view->axis[i] = (float)-basis.back[i];
 	}
 	map_layer_perspective(&view->layer, &basis, origin,
-			      map_half(pixels, margin), PATCH_NEAR_M, far_of(stage, origin), pixels);
+			      map_half(pixels, margin), PATCH_NEAR * stage->least_m,
+			      far_of(stage, origin), stage->least_m, pixels);
 }
 
 static void patch_frame(const struct emissive_patch *patch, struct map_basis *frame)

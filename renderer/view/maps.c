@@ -23,6 +23,15 @@ static void unit3(double v[3])
 		v[i] /= length;
 }
 
+double map_least_length(const float min[3], const float max[3])
+{
+	double sum = 0;
+
+	for (int i = 0; i < 3; i++)
+		sum += pow((double)max[i] - (double)min[i], 2);
+	return fmin(1e-3, 1e-3 * sqrt(sum));
+}
+
 void map_basis_look(const float direction[3], struct map_basis *out)
 {
 	double up[3] = { 0, 1, 0 };
@@ -77,25 +86,25 @@ static void fill_clip(struct map_layer *out, const struct map_basis *basis, cons
 
 void map_layer_perspective(struct map_layer *out, const struct map_basis *basis,
 			   const float origin[3], double half, double near_m, double far_m,
-			   int pixels)
+			   double lift_m, int pixels)
 {
 	const double z[2] = { near_m / (far_m - near_m), far_m * near_m / (far_m - near_m) };
 
 	*out = (struct map_layer){
 		.extent = { (float)half, (float)pixels, 1, (float)z[1] },
-		.range = { (float)near_m, (float)far_m, 0, 0 },
+		.range = { (float)near_m, (float)far_m, (float)lift_m, 0 },
 	};
 	fill_clip(out, basis, origin, 1 / half, z, true);
 }
 
 void map_layer_ortho(struct map_layer *out, const struct map_basis *basis, const float origin[3],
-		     double half, double near_m, double far_m, int pixels)
+		     double half, double near_m, double far_m, double lift_m, int pixels)
 {
 	const double z[2] = { 1 / (far_m - near_m), far_m / (far_m - near_m) };
 
 	*out = (struct map_layer){
 		.extent = { (float)half, (float)pixels, 0, (float)z[0] },
-		.range = { (float)near_m, (float)far_m, 0, 0 },
+		.range = { (float)near_m, (float)far_m, (float)lift_m, 0 },
 	};
 	fill_clip(out, basis, origin, 1 / half, z, false);
 }

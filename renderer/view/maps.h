@@ -20,13 +20,20 @@ void map_basis_look(const float direction[3], struct map_basis *out);
 /* Face 0..5 of a cube: +x -x +y -y +z -z of the given axes (columns of a frame). */
 void map_basis_face(const struct map_basis *frame, int face, struct map_basis *out);
 
-/* half: tangent of half the angle of view. */
+/*
+ * A length that is nothing beside a scene of these bounds, metres: 1 mm; a
+ * thousandth of the diagonal in one that is smaller than a metre. Shadows need
+ * not be finer, and what is nearer to a lamp is taken for the lamp.
+ */
+double map_least_length(const float min[3], const float max[3]);
+
+/* half: tangent of half the angle of view. lift: see struct map_layer. */
 void map_layer_perspective(struct map_layer *out, const struct map_basis *basis,
 			   const float origin[3], double half, double near_m, double far_m,
-			   int pixels);
+			   double lift_m, int pixels);
 /* half: half the width, metres; near and far along the axis from origin. */
 void map_layer_ortho(struct map_layer *out, const struct map_basis *basis, const float origin[3],
-		     double half, double near_m, double far_m, int pixels);
+		     double half, double near_m, double far_m, double lift_m, int pixels);
 
 struct depth_maps {
 	unsigned texture; /* GL_TEXTURE_2D_ARRAY, DEPTH_COMPONENT32F */

@@ -1,6 +1,7 @@
 #include "renderer/view/patches.h"
 
 #include "base/result.h"
+#include "renderer/view/maps.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -11,7 +12,6 @@
 #define PIECES_WANTED 512
 /* Edge directions tried for a cluster's rectangle. */
 #define DIRECTIONS_TRIED 96
-#define LIFT_M 1e-3
 
 struct piece {
 	double corner[3][3];
@@ -27,6 +27,7 @@ struct piece {
 struct pieces {
 	struct piece *at;
 	size_t count, size;
+	double lift_m; /* off its surface, of the point from where a patch looks */
 };
 
 struct cluster {
@@ -399,7 +400,7 @@ static void closest_piece(const struct pieces *pieces, const struct cluster *c,
 	for (int i = 0; i < 3; i++) {
 		double at = flat ? to[i] + along * best->normal[i] : best->centroid[i];
 
-		origin[i] = (float)(at + LIFT_M * best->normal[i]);
+		origin[i] = (float)(at + pieces->lift_m * best->normal[i]);
 		normal[i] = (float)best->normal[i];
 	}
 }
@@ -523,7 +524,7 @@ static void cluster_all(struct pieces *pieces, struct emissive_patches *out)
 
 int emissive_patches(const struct scene *scene, struct emissive_patches *out)
 {
-	struct pieces pieces = { NULL, 0, 0 };
+	struct pieces pieces = { .lift_m = map_least_length(scene->min, scene->max) };
 	double area = 0;
 	int result;
 

@@ -11,8 +11,8 @@
 
 /* A wider cone would waste most of one map's texels in its corners. */
 #define WIDEST_SINGLE_MAP_RAD 2.0944f
-/* Nearer to a lamp than this nothing throws a shadow: the bulb and its socket. */
-#define LAMP_NEAR_M 0.01
+/* Nearer to a lamp than so many least lengths nothing throws a shadow: the bulb and its socket. */
+#define LAMP_NEAR 10
 /* Texels round a map beyond the cone or the cube's face, for the filter to read. */
 #define MARGIN_TEXELS 8
 #define MAX_FACES 6
@@ -38,6 +38,7 @@ struct shadow_stage {
 		struct lamp_record lamps[SCENE_MAX_LAMPS];
 	} block;
 	float min[3], max[3];
+	double least_m; /* map_least_length */
 };
 
 static int lamp_layers(const struct scene_lamp *lamp)
@@ -74,6 +75,7 @@ int shadow_create(struct shadow_stage **out, const struct scene_file *file,
 								     : SCENE_MAX_LAMPS);
 	memcpy(stage->min, scene->min, sizeof(stage->min));
 	memcpy(stage->max, scene->max, sizeof(stage->max));
+	stage->least_m = map_least_length(scene->min, scene->max);
 	for (int i = 0; i < stage->lamp_count; i++) {
 		stage->state[i].first = first;
 		stage->state[i].count = lamp_layers(&file->lamps[i]);
@@ -127,7 +129,8 @@ static bool usable(const struct scene_lamp *file, const struct frame_lamp *lamp,
 }
 
 static void fill_record(struct lamp_record *r, const struct scene_lamp *file,
-			const struct frame_lamp *lamp, const struct lamp_state *state)
+			const struct frame_lamp *lamp, const struct lamp_state *state,
+			double least_m)
 {
 	float umbra = cosf(0.5f * file->cone_rad);
 	float penumbra = cosf(fmaxf(0.5f * file->cone_rad - file->penumbra_rad, 0.0f));
@@ -143,6 +146,7 @@ static void fill_record(struct lamp_record *r, const struct scene_lamp *file,
 	r->position[3] = file->kind == SCENE_LAMP_DIRECTIONAL ? tanf(0.5f * file->angle_rad)
 							       : file->radius_m;
 	r->direction[3] = (float)file->kind;
+	r->intensity[3] = (float)fmax((double)file->radius_m, least_m);
 	r->cone[0] = umbra;
 	r->cone[1] = penumbra;
 	r->cone[2] = penumbra > umbra ? 1 / (penumbra - umbra) : 0;
@@ -168,7 +172,8 @@ int shadow_take(struct shadow_stage *stage, const struct render_frame *frame)
 
 		if (other) {
 			usable(&stage->file->lamps[i], now, state);
-			fill_record(&stage->block.lamps[i], &stage->file->lamps[i], now, state);
+			fill_record(&stage->block.lamps[i], &stage->file->lamps[i], now, state,
+				    stage->least_m);
 			state->last = *now;
 		}
 		state->depth_old |= moved;
@@ -191,7 +196,7 @@ static double farthest_corner(const struct shadow_stage *stage, const float from
 
 		sum += fmax(a, b) * fmax(a, b);
 	}
-	return sqrt(sum) * 1.001 + 2 * LAMP_NEAR_M;
+	return sqrt(sum) * 1.001 + 2 * LAMP_NEAR * stage->least_m;
 }
 
 /* A map that just holds the scene's bounds, seen along the lamp's direction. */
@@ -200,6 +205,7 @@ static void directional_view(const struct shadow_stage *stage, const struct lamp
 {
 	struct map_basis basis;
 	double low[3] = { INFINITY, INFINITY, INFINITY }, high[3], half;
+	double room = LAMP_NEAR * stage->least_m;
 
 	for (int i = 0; i < 3; i++)
 		high[i] = -INFINITY;
@@ -220,10 +226,10 @@ static void directional_view(const struct shadow_stage *stage, const struct lamp
 		view->origin[i] = (float)(0.5 * (low[0] + high[0]) * basis.right[i] +
 					  0.5 * (low[1] + high[1]) * basis.up[i] +
 					  high[2] * basis.back[i]);
-	half = 0.5 * fmax(fmax(high[0] - low[0], high[1] - low[1]), 1e-3);
+	half = 0.5 * fmax(fmax(high[0] - low[0], high[1] - low[1]), stage->least_m);
 	half *= (double)pixels / (pixels - 2 * margin);
-	map_layer_ortho(&view->layer, &basis, view->origin, half, -0.01,
-			high[2] - low[2] + 0.01, pixels);
+	map_layer_ortho(&view->layer, &basis, view->origin, half, -room, high[2] - low[2] + room,
+			stage->least_m, pixels);
 	memcpy(view->axis, lamp->direction, sizeof(view->axis));
 }
 
@@ -251,8 +257,8 @@ static void lamp_view(const struct shadow_stage *stage, int index, int face, int
 	memcpy(view->origin, lamp->position, sizeof(view->origin));
 	for (int i = 0; i < 3; i++)
 		view->axis[i] = (float)-basis.back[i];
-	map_layer_perspective(&view->layer, &basis, view->origin, half, LAMP_NEAR_M,
-			      farthest_corner(stage, view->origin), pixels);
+	map_layer_perspective(&view->layer, &basis, view->origin, half, LAMP_NEAR * stage->least_m,
+			      farthest_corner(stage, view->origin), stage->least_m, pixels);
 }
 
 static void draw_lamp(struct shadow_stage *stage, int index)

@@ -108,6 +108,89 @@ static void bakes_once(void **state)
 	surfel_store_finish(&store);
 }
 
+/* What is done to a file that fits, and what is said of it. */
+static void other_version(FILE *file)
+{
+	fseek(file, 12, SEEK_SET);
+	fputc(99, file);
+}
+
+static void other_scene(FILE *file)
+{
+	int byte;
+
+	fseek(file, 16, SEEK_SET);
+	byte = fgetc(file);
+	fseek(file, 16, SEEK_SET);
+	fputc(byte ^ 0xff, file);
+}
+
+static void flipped_bit(FILE *file)
+{
+	int byte;
+
+	fseek(file, 1000, SEEK_SET);
+	byte = fgetc(file);
+	fseek(file, 1000, SEEK_SET);
+	fputc(byte ^ 0x10, file);
+}
+
+static void cut_short(FILE *file)
+{
+	fflush(file);
+	assert_int_equal(ftruncate(fileno(file), 1000), 0);
+}
+
+static void emptied(FILE *file)
+{
+	fflush(file);
+	assert_int_equal(ftruncate(fileno(file), 0), 0);
+}
+
+/* Refused with the reason, baked anew, and put in place: the next finds a file that fits. */
+static void rebuilt(void **state)
+{
+	static const struct {
+		void (*spoil)(FILE *file);
+		const char *said;
+	} faults[] = {
+		{ other_version, "another version" }, { other_scene, "another scene" },
+		{ flipped_bit, "checksum" },          { cut_short, "cut short" },
+		{ emptied, "not a file" },
+	};
+	struct surfel_store_done done;
+	struct surfel_store store;
+	struct surfel_set *found;
+
+	(void)state;
+	assert_int_equal(surfel_store_at(&store, in_folder("my.surfels")), GR_OK);
+	for (size_t i = 0; i < sizeof faults / sizeof *faults; i++) {
+		for (int round = 0; round < 3; round++) {
+			struct gr_diag diag = { 0 };
+			bool spoilt = round == 1;
+
+			if (spoilt) {
+				FILE *file = fopen(store.beside, "r+b");
+
+				assert_non_null(file);
+				faults[i].spoil(file);
+				fclose(file);
+			}
+			assert_int_equal(surfel_store_get(&store, &found, scene, NULL, &coarse, &diag,
+							  &done), GR_OK);
+			assert_int_equal(done.baked, spoilt || (i == 0 && round == 0));
+			assert_int_equal(diag.warnings, spoilt);
+			if (spoilt && !is_said(&diag, faults[i].said))
+				fail_msg("'%s' does not say '%s'", diag.items[0].text, faults[i].said);
+			assert_int_equal(surfel_set_hash(found), surfel_set_hash(set));
+			surfel_set_destroy(&found);
+			gr_diag_finish(&diag);
+		}
+	}
+	unlink(store.beside);
+	surfel_store_finish(&store);
+}
+
 static void goes_to_the_cache(void **state)
 {
 	char scene_path[128], cache[160];
@@ -414,6 +497,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(bakes_once),
+		cmocka_unit_test(rebuilt),
 		cmocka_unit_test(goes_to_the_cache),
 		cmocka_unit_test(full_after_the_lock),
 		cmocka_unit_test(disk_full),
