@@ -72,10 +72,15 @@ tests_unit_test_surfel_bake_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
 tests_unit_test_surfel_bake_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS)
 
 if FUZZERS
-noinst_PROGRAMS += tests/fuzz/fuzz_surfel_file
+noinst_PROGRAMS += tests/fuzz/fuzz_costs_file tests/fuzz/fuzz_surfel_file
 endif
 tests_fuzz_fuzz_surfel_file_SOURCES = tests/fuzz/fuzz_surfel_file.c
 tests_fuzz_fuzz_surfel_file_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(SODIUM_CFLAGS)
 tests_fuzz_fuzz_surfel_file_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
 tests_fuzz_fuzz_surfel_file_LDADD = $(RENDERER_LIBS)
 EXTRA_DIST += tests/fuzz/corpus/surfels/quad.surfels
+tests_fuzz_fuzz_costs_file_SOURCES = tests/fuzz/fuzz_costs_file.c
+tests_fuzz_fuzz_costs_file_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(SODIUM_CFLAGS)
+tests_fuzz_fuzz_costs_file_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_costs_file_LDADD = $(RENDERER_LIBS)
+EXTRA_DIST += tests/fuzz/corpus/costs/fuzz.txt
