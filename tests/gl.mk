@@ -27,6 +27,13 @@ tests_unit_test_import_SOURCES = tests/unit/test_import.c tests/unit/unit.h test
 tests_unit_test_import_CFLAGS = $(GL_TEST_CFLAGS) $(ASSIMP_CFLAGS) $(JPEG_CFLAGS)
 tests_unit_test_import_LDADD = $(GL_TEST_LIBS)
 
+check_PROGRAMS += tests/unit/test_import_files
+TESTS += tests/unit/test_import_files
+tests_unit_test_import_files_SOURCES = tests/unit/test_import_files.c tests/unit/unit.h \
+	tests/unit/shared.h tests/unit/glb.h
+tests_unit_test_import_files_CFLAGS = $(GL_TEST_CFLAGS) $(ASSIMP_CFLAGS) $(JPEG_CFLAGS)
+tests_unit_test_import_files_LDADD = $(GL_TEST_LIBS)
+
 EXTRA_DIST += tests/data/crash.fbx
 check_PROGRAMS += tests/unit/test_isolate
 TESTS += tests/unit/test_isolate

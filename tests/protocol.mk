@@ -4,6 +4,7 @@ PROTOCOL_TEST_LDADD = $(PROTOCOL_LIBS) $(CMOCKA_LIBS)
 
 PROTOCOL_TESTS = \
 	tests/unit/test_cluster \
+	tests/unit/test_cluster_hostile \
 	tests/unit/test_fragment \
 	tests/unit/test_key \
 	tests/unit/test_pack \
@@ -19,6 +20,10 @@ tests_unit_test_cluster_SOURCES = tests/unit/test_cluster.c \
 	tests/unit/cluster_sim.c tests/unit/cluster_sim.h tests/unit/unit.h
 tests_unit_test_cluster_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_cluster_LDADD = $(PROTOCOL_TEST_LDADD)
+tests_unit_test_cluster_hostile_SOURCES = tests/unit/test_cluster_hostile.c \
+	tests/unit/cluster_sim.c tests/unit/cluster_sim.h tests/unit/unit.h
+tests_unit_test_cluster_hostile_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_unit_test_cluster_hostile_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_fragment_SOURCES = tests/unit/test_fragment.c tests/unit/unit.h
 tests_unit_test_fragment_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_fragment_LDADD = $(PROTOCOL_TEST_LDADD)

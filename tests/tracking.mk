@@ -1,10 +1,14 @@
 # tests of tracking
-check_PROGRAMS += tests/unit/test_tracking tests/unit/test_replay
-TESTS += tests/unit/test_tracking tests/unit/test_replay
+check_PROGRAMS += tests/unit/test_tracking tests/unit/test_sim tests/unit/test_replay
+TESTS += tests/unit/test_tracking tests/unit/test_sim tests/unit/test_replay
 
-tests_unit_test_tracking_SOURCES = tests/unit/test_tracking.c tests/unit/unit.h
+tests_unit_test_tracking_SOURCES = tests/unit/test_tracking.c tests/unit/visitor.h tests/unit/unit.h
 tests_unit_test_tracking_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_tracking_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
+
+tests_unit_test_sim_SOURCES = tests/unit/test_sim.c tests/unit/visitor.h tests/unit/unit.h
+tests_unit_test_sim_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_sim_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
 
 tests_unit_test_replay_SOURCES = tests/unit/test_replay.c tests/unit/unit.h
 tests_unit_test_replay_CFLAGS = $(TEST_CFLAGS)

@@ -5,6 +5,7 @@
 #include "renderer/scene/scene.h"
 #include "tools/cli.h"
 #include "tools/command.h"
+#include "tools/load.h"
 #include "tools/progress.h"
 #include "tools/say.h"
 
@@ -41,21 +42,6 @@ static bool show(void *ctx, const char *stage, double done, double seconds_left)
 
 	progress_show(&run->progress, done, seconds_left, stage);
 	return !progress_asked_to_end();
-}
-
-static int load(struct bake_run *run, const char *path)
-{
-	struct gr_diag diag = { 0 };
-	int result = scene_file_load(path, &run->file, &diag);
-
-	if (result == GR_OK)
-		result = scene_import(run->file, &run->scene, &diag);
-	say_diag(&diag);
-	gr_diag_finish(&diag);
-	/* A file that cannot be opened is a wrong path. */
-	return result == GR_ERR_IO || result == GR_ERR_RANGE || result == GR_ERR_FORMAT
-		       ? GR_ERR_CONFIG
-		       : result;
 }
 
 static int get(struct bake_run *run)
@@ -135,7 +121,7 @@ int command_bake(int argc, char **argv)
 		fprintf(stderr, "grotto bake: needs one SCENE\n");
 		return GR_EXIT_CONFIG;
 	}
-	result = load(&run, argv[1]);
+	result = load_scene(argv[1], &run.file, &run.scene);
 	if (result == GR_OK)
 		result = get(&run);
 	if (result == GR_OK)

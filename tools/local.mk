@@ -4,6 +4,7 @@ tools_libgtools_a_SOURCES = \
 	tools/ask.c tools/ask.h \
 	tools/children.c tools/children.h \
 	tools/cli.c tools/cli.h \
+	tools/load.c tools/load.h \
 	tools/programs.c tools/programs.h \
 	tools/progress.c tools/progress.h \
 	tools/report.c tools/report.h \

@@ -5,7 +5,7 @@
 #include "renderer/frame.h"
 #include "tools/cli.h"
 #include "tools/command.h"
-#include "tools/say.h"
+#include "tools/load.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -28,25 +28,10 @@ static bool show(void *ctx, double done, double seconds_left, double error)
 	return !run->stopped;
 }
 
-static int load(struct reference_run *run, const char *path)
-{
-	struct gr_diag diag = { 0 };
-	int result = scene_file_load(path, &run->file, &diag);
-
-	if (result == GR_OK)
-		result = scene_import(run->file, &run->scene, &diag);
-	say_diag(&diag);
-	gr_diag_finish(&diag);
-	/* A file that cannot be opened is a wrong path. */
-	return result == GR_ERR_IO || result == GR_ERR_RANGE || result == GR_ERR_FORMAT
-		       ? GR_ERR_CONFIG
-		       : result;
-}
-
 static int trace(struct reference_run *run, const char *path)
 {
 	const struct reference_options *o = run->options;
-	int result = load(run, path);
+	int result = load_scene(path, &run->file, &run->scene);
 
 	if (result != GR_OK)
 		return result;

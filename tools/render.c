@@ -6,7 +6,7 @@
 #include "renderer/renderer.h"
 #include "tools/cli.h"
 #include "tools/command.h"
-#include "tools/say.h"
+#include "tools/load.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -70,16 +70,8 @@ static int choose_camera(struct still *still, const char *name)
 
 static int load(struct still *still, const char *path, const struct render_options *options)
 {
-	struct gr_diag diag = { 0 };
-	int result = scene_file_load(path, &still->file, &diag);
+	int result = load_scene(path, &still->file, &still->scene);
 
-	if (result == GR_OK)
-		result = scene_import(still->file, &still->scene, &diag);
-	say_diag(&diag);
-	gr_diag_finish(&diag);
-	/* A file that cannot be opened is a wrong path. */
-	if (result == GR_ERR_IO || result == GR_ERR_RANGE || result == GR_ERR_FORMAT)
-		result = GR_ERR_CONFIG;
 	if (result == GR_OK)
 		result = choose_camera(still, options->camera);
 	if (result == GR_OK && options->size[0] > 0)

@@ -1,6 +1,7 @@
 #include "renderer/image/compare.h"
 
 #include "base/result.h"
+#include "renderer/tone/srgb.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -180,10 +181,8 @@ int compare_shown(const struct image *picture, double exposure, struct image *ou
 	for (size_t i = 0; i < pixels(picture) * (size_t)picture->channels; i++) {
 		double v = (double)picture->data[i] * exposure;
 
-		if (isfinite(v)) {
-			v = v < 0 ? 0 : v > 1 ? 1 : v;
-			v = v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055;
-		}
+		if (isfinite(v))
+			v = srgb_encode(v < 0 ? 0 : v > 1 ? 1 : v);
 		out->data[i] = (float)v;
 	}
 	return GR_OK;

@@ -6,6 +6,7 @@
 #include "base/result.h"
 #include "renderer/image/compare.h"
 #include "renderer/image/convolve.h"
+#include "renderer/tone/srgb.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -38,11 +39,6 @@ static void transform(const double m[3][3], const double in[3], double out[3])
 static double white(int i)
 {
 	return to_xyz[i][0] + to_xyz[i][1] + to_xyz[i][2];
-}
-
-static double linear(double v)
-{
-	return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
 }
 
 /* The opponent space YCxCz, in which eyes are sharp by channel (section 4.1). */
@@ -209,7 +205,7 @@ static void look_at(const struct image *shown, double pixels_per_degree, float *
 		for (size_t c = 0; c < 3; c++) {
 			double v = (double)shown->data[3 * i + c];
 
-			rgb[c] = isfinite(v) ? linear(v) : 0;
+			rgb[c] = isfinite(v) ? srgb_decode(v) : 0;
 		}
 		rgb_to_opponent(rgb, opponent);
 		for (int c = 0; c < 3; c++)

@@ -1,15 +1,14 @@
 #include "renderer/scene/texel.h"
 
+#include "renderer/tone/srgb.h"
+
 #include <math.h>
 
 void texel_curve_init(struct texel_curve *out)
 {
 	for (int code = 0; code < 256; code++) {
-		float v = (float)code / 255.0f;
-
-		out->plain[code] = v;
-		out->srgb[code] = v <= 0.04045f ? v / 12.92f
-						: powf((v + 0.055f) / 1.055f, 2.4f);
+		out->plain[code] = (float)code / 255.0f;
+		out->srgb[code] = (float)srgb_decode(code / 255.0);
 	}
 }
 

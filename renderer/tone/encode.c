@@ -1,5 +1,7 @@
 #include "renderer/tone/encode.h"
 
+#include "renderer/tone/srgb.h"
+
 #include <math.h>
 
 static float encode(const struct scene_tone *tone, float radiance, float gamma)
@@ -10,7 +12,7 @@ static float encode(const struct scene_tone *tone, float radiance, float gamma)
 		l = l / (1.0f + l);
 	l = fminf(l, 1.0f);
 	if (tone->srgb)
-		return l <= 0.0031308f ? 12.92f * l : 1.055f * powf(l, 1.0f / 2.4f) - 0.055f;
+		return (float)srgb_encode((double)l);
 	return l > 0.0f ? powf(l, gamma) : 0.0f;
 }
 

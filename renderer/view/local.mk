@@ -1,6 +1,6 @@
 # renderer/view, renderer/tone
 RENDERER_SOURCES += \
-	renderer/tone/encode.c renderer/tone/encode.h \
+	renderer/tone/encode.c renderer/tone/encode.h renderer/tone/srgb.h \
 	renderer/tone/tone.c renderer/tone/tone.h \
 	renderer/view/backdrop.c renderer/view/backdrop.h \
 	renderer/view/blocks.h \

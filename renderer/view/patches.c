@@ -1,6 +1,7 @@
 #include "renderer/view/patches.h"
 
 #include "base/result.h"
+#include "renderer/tone/srgb.h"
 #include "renderer/view/maps.h"
 
 #include <math.h>
@@ -47,11 +48,6 @@ static void cross3(const double a[3], const double b[3], double out[3])
 	out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-static double linear_of_srgb(double c)
-{
-	return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
-}
-
 /* Emission of a piece: the texture's texel at its middle. */
 static void sample_emission(const struct scene *scene, struct piece *p)
 {
@@ -78,7 +74,7 @@ static void sample_emission(const struct scene *scene, struct piece *p)
 		double c = image->rgba[4 * ((size_t)y * (size_t)image->width + (size_t)x) +
 				       (size_t)i] / 255.0;
 
-		p->emission[i] *= image->srgb ? linear_of_srgb(c) : c;
+		p->emission[i] *= image->srgb ? srgb_decode(c) : c;
 	}
 }
 

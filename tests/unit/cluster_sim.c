@@ -485,3 +485,40 @@ void sim_finish(struct sim *s)
 	free(s->delivery_ns);
 	param_state_destroy(&s->state);
 }
+
+uint64_t sim_seed_of(const char *name)
+{
+	struct unit_random r = unit_random_start(name);
+
+	return unit_random_u32(&r);
+}
+
+void sim_assert_in_step(struct sim *s)
+{
+	for (size_t i = 0; i < s->node_count; i++) {
+		assert_non_null(s->nodes[i].node);
+		assert_int_equal(sim_peer(s, (int)i).state, FDP_PEER_LIVE);
+		assert_int_equal(fdp_node_hash(s->nodes[i].node), fdp_master_hash(s->master));
+		assert_int_equal(s->nodes[i].mismatches, 0);
+	}
+	assert_int_equal(s->mismatches, 0);
+}
+
+void sim_assert_all_swapped(struct sim *s, uint64_t frames)
+{
+	for (size_t i = 0; i < s->node_count; i++) {
+		assert_int_equal(s->nodes[i].frames, frames);
+		assert_int_equal(s->nodes[i].swaps, frames);
+		assert_int_equal(sim_peer(s, (int)i).swapped, frames);
+	}
+	sim_assert_in_step(s);
+}
+
+void sim_start_running(struct sim *s, size_t nodes)
+{
+	sim_init(s, nodes, 11);
+	sim_start_all(s);
+	sim_assemble(s);
+	sim_run_frames(s, 20);
+	sim_assert_all_swapped(s, 20);
+}

@@ -93,4 +93,13 @@ void sim_finish(struct sim *s);
 struct fdp_peer_status sim_peer(const struct sim *s, int node);
 int64_t sim_delivery_quantile(struct sim *s, double q);
 
+/* Of a random test, said so that it can be repeated. */
+uint64_t sim_seed_of(const char *name);
+/* Every node is live and has the master's state, and none ever differed. */
+void sim_assert_in_step(struct sim *s);
+/* And all have drawn and swapped so many frames. */
+void sim_assert_all_swapped(struct sim *s, uint64_t frames);
+/* A room without loss that has shown 20 frames. */
+void sim_start_running(struct sim *s, size_t nodes);
+
 #endif

@@ -3,6 +3,7 @@
 #define GROTTO_TESTS_UNIT_H
 
 #include <setjmp.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -55,6 +56,14 @@ static __attribute__((noinline, unused)) uint8_t *unit_copy(const void *bytes, s
 	if (len)
 		memcpy(copy, bytes, len);
 	return copy;
+}
+
+/* Three floats are those numbers, to 1e-6. */
+static inline void assert_vector(const float *v, double x, double y, double z)
+{
+	assert_true(fabs((double)v[0] - x) < 1e-6);
+	assert_true(fabs((double)v[1] - y) < 1e-6);
+	assert_true(fabs((double)v[2] - z) < 1e-6);
 }
 
 #endif

@@ -2,14 +2,10 @@
 
 #include "base/result.h"
 #include "renderer/image/compare.h"
+#include "renderer/tone/srgb.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-static double srgb(double v)
-{
-	return v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055;
-}
 
 int bench_picture_show(const struct image *picture, const struct scene_tone *tone, struct image *out)
 {
@@ -21,7 +17,7 @@ int bench_picture_show(const struct image *picture, const struct scene_tone *ton
 
 		if (tone->curve == SCENE_CURVE_REINHARD)
 			v = v / (1 + v);
-		out->data[i] = (float)srgb(fmin(v, 1));
+		out->data[i] = (float)srgb_encode(fmin(v, 1));
 	}
 	return result;
 }

@@ -3,7 +3,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "tools/bench/truth_traced.h"
-#include "tools/say.h"
+#include "tools/load.h"
 
 #include <errno.h>
 #include <math.h>
@@ -49,15 +49,8 @@ static void name_of(const char *path, char name[64])
 
 static int load(struct bench_scene *s, const char *path)
 {
-	struct gr_diag diag = { 0 };
-	int result = scene_file_load(path, &s->file, &diag);
-
 	name_of(path, s->name);
-	if (result == GR_OK)
-		result = scene_import(s->file, &s->scene, &diag);
-	say_diag(&diag);
-	gr_diag_finish(&diag);
-	return result == GR_OK || result == GR_ERR_NOMEM ? result : GR_ERR_CONFIG;
+	return load_scene(path, &s->file, &s->scene);
 }
 
 static int choose_camera(struct bench_scene *s, const struct bench_options *options)
