@@ -47,9 +47,14 @@ tests_accuracy_test_backdrop_SOURCES = tests/accuracy/test_backdrop.c $(VIEW_TES
 tests_accuracy_test_backdrop_CFLAGS = $(VIEW_TEST_CFLAGS)
 tests_accuracy_test_backdrop_LDADD = $(VIEW_TEST_LIBS)
 
-check_PROGRAMS += tests/accuracy/test_hard_scenes
-TESTS += tests/accuracy/test_hard_scenes
-tests_accuracy_test_hard_scenes_SOURCES = tests/accuracy/test_hard_scenes.c \
-	tests/accuracy/hard/model.c tests/accuracy/hard/model.h tests/unit/glb.h tests/unit/unit.h
+# scenes and lamps that nobody would have, through every method
+HARD_SOURCES = tests/accuracy/hard/model.c tests/accuracy/hard/model.h \
+	tests/accuracy/hard/room.c tests/accuracy/hard/room.h tests/unit/glb.h tests/unit/unit.h
+check_PROGRAMS += tests/accuracy/test_hard_light tests/accuracy/test_hard_scenes
+TESTS += tests/accuracy/test_hard_light tests/accuracy/test_hard_scenes
+tests_accuracy_test_hard_light_SOURCES = tests/accuracy/test_hard_light.c $(HARD_SOURCES)
+tests_accuracy_test_hard_light_CFLAGS = $(VIEW_TEST_CFLAGS)
+tests_accuracy_test_hard_light_LDADD = $(VIEW_TEST_LIBS)
+tests_accuracy_test_hard_scenes_SOURCES = tests/accuracy/test_hard_scenes.c $(HARD_SOURCES)
 tests_accuracy_test_hard_scenes_CFLAGS = $(VIEW_TEST_CFLAGS)
 tests_accuracy_test_hard_scenes_LDADD = $(VIEW_TEST_LIBS)

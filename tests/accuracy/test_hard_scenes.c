@@ -9,41 +9,18 @@
 #include "renderer/gi/gi.h"
 #include "renderer/renderer.h"
 #include "renderer/trace/reference.h"
-#include "tests/accuracy/hard/model.h"
+#include "tests/accuracy/hard/room.h"
 #include "tests/unit/unit.h"
 
 #include <math.h>
 #include <unistd.h>
 
-#define SIDE 32
-#define WALLS 6
-#define POINTS (9 * WALLS)
+#define SIDE HARD_PIXELS
+#define POINTS HARD_POINTS
 #define LONG_NS INT64_C(600000000000)
 
 static struct target *target;
 static char folder[64];
-
-/* --- the plain room, 4 m wide --- */
-
-static const float room[3] = { 4, 3, 4 };
-static const float lamp_at[3] = { 2.4f, 2.8f, 2.2f };
-
-static void walls(struct model *model, int material)
-{
-	model_box(model, material, (float[3]){ 0, 0, 0 }, room, true);
-}
-
-static void block(struct model *model, int material, bool inside_out)
-{
-	model_box(model, material, (float[3]){ 0.9f, 0, 0.9f }, (float[3]){ 1.7f, 1.1f, 1.7f },
-		  inside_out);
-}
-
-static void plain(struct model *model)
-{
-	walls(model, model_material(model, "wall", 0.6f, 0.55f, 0.5f));
-	block(model, model_material(model, "block", 0.3f, 0.5f, 0.6f), false);
-}
 
 /* --- what is wrong with the others --- */
 
@@ -52,7 +29,7 @@ static void broken_triangles(struct model *model)
 	static const float a[3] = { 1, 1, 1 }, b[3] = { 2, 1, 1 }, c[3] = { 3, 1, 1 };
 	static const float nan[3] = { NAN, 1, 2 }, infinite[3] = { 1, INFINITY, 2 };
 
-	plain(model);
+	hard_plain(model);
 	model_triangle(model, 0, a, a, a);        /* a point, */
 	model_triangle(model, 0, a, b, a);        /* an edge, */
 	model_triangle(model, 1, a, b, c);        /* a line, */
@@ -66,7 +43,7 @@ static void non_manifold(struct model *model)
 	int wall = model_material(model, "wall", 0.6f, 0.55f, 0.5f);
 	int sheet = model_material(model, "sheet", 0.3f, 0.5f, 0.6f);
 
-	walls(model, wall);
+	hard_walls(model, wall);
 	model->materials[sheet].two_sided = true;
 	for (int i = 0; i < 3; i++) {
 		float angle = 2.2f * (float)i + 0.3f;
@@ -80,37 +57,37 @@ static void non_manifold(struct model *model)
 
 static void block_inside_out(struct model *model)
 {
-	walls(model, model_material(model, "wall", 0.6f, 0.55f, 0.5f));
-	block(model, model_material(model, "block", 0.3f, 0.5f, 0.6f), true);
+	hard_walls(model, model_material(model, "wall", 0.6f, 0.55f, 0.5f));
+	hard_block(model, model_material(model, "block", 0.3f, 0.5f, 0.6f), true);
 }
 
 /* Nothing in it shows the lamp a front. */
 static void room_inside_out(struct model *model)
 {
-	model_box(model, model_material(model, "wall", 0.6f, 0.55f, 0.5f), (float[3]){ 0, 0, 0 }, room,
+	model_box(model, model_material(model, "wall", 0.6f, 0.55f, 0.5f), (float[3]){ 0, 0, 0 }, hard_room,
 		  false);
 }
 
 /* Every face twice, and the block once more inside out. */
 static void coincident_faces(struct model *model)
 {
-	plain(model);
-	walls(model, 0);
-	block(model, 1, false);
-	block(model, 1, true);
+	hard_plain(model);
+	hard_walls(model, 0);
+	hard_block(model, 1, false);
+	hard_block(model, 1, true);
 }
 
 static void black(struct model *model)
 {
-	walls(model, model_material(model, "wall", 0, 0, 0));
-	block(model, model_material(model, "block", 0, 0, 0), false);
+	hard_walls(model, model_material(model, "wall", 0, 0, 0));
+	hard_block(model, model_material(model, "block", 0, 0, 0), false);
 }
 
 static void bright_emitter(struct model *model)
 {
 	int light;
 
-	plain(model);
+	hard_plain(model);
 	light = model_material(model, "light", 0, 0, 0);
 	for (int i = 0; i < 3; i++)
 		model->materials[light].emission[i] = 1e9f;
@@ -121,7 +98,7 @@ static void bright_emitter(struct model *model)
 /* Walls that are seen and stop light from both sides. */
 static void two_sided(struct model *model)
 {
-	plain(model);
+	hard_plain(model);
 	model->materials[0].two_sided = true;
 }
 
@@ -140,20 +117,20 @@ struct hard_case {
 };
 
 static const struct hard_case cases[] = {
-	{ "plain", plain, 1, 60, "", AS_TRACED, 0, false },
+	{ "plain", hard_plain, 1, 60, "", AS_TRACED, 0, false },
 	{ "zero-area, NaN and infinite triangles", broken_triangles, 1, 60, "", AS_TRACED, 1e-6, false },
 	{ "non-manifold", non_manifold, 1, 60, "", AS_TRACED, 0, false },
 	{ "block inside out", block_inside_out, 1, 60, "", AS_TRACED, 0, false },
 	{ "room inside out", room_inside_out, 1, 60, "", BLACK, 0, false },
 	{ "coincident faces", coincident_faces, 1, 60, "", AS_TRACED, 0.15, false },
-	{ "10 km wide", plain, 2500, 60, "", AS_TRACED, 0.1, false },
-	{ "1 mm wide", plain, 0.00025f, 60, "", AS_TRACED, 0.1, true },
+	{ "10 km wide", hard_plain, 2500, 60, "", AS_TRACED, 0.1, false },
+	{ "1 mm wide", hard_plain, 0.00025f, 60, "", AS_TRACED, 0.1, true },
 	{ "emitter of 1e9", bright_emitter, 1, 0, "", AS_TRACED, 0, false },
 	{ "emitter of 1e9, 1 mm", bright_emitter, 0.00025f, 0, "", AS_TRACED, 0, true },
 	{ "emitter of 1e9, 10 km", bright_emitter, 2500, 0, "", AS_TRACED, 0, false },
-	{ "lamp of 1e9", plain, 1, 1e9f, "", AS_TRACED, 1e-5, false },
+	{ "lamp of 1e9", hard_plain, 1, 1e9f, "", AS_TRACED, 1e-5, false },
 	{ "closed black box", black, 1, 60, "", BLACK, 0, false },
-	{ "no lamps at all", plain, 1, 0, "", BLACK, 0, false },
+	{ "no lamps at all", hard_plain, 1, 0, "", BLACK, 0, false },
 	{ "closed, 1e9 outside", two_sided, 1, 60,
 	  "environment = { kind = \"constant\"; radiance = [1e9, 1e9, 1e9]; };", AS_TRACED, 0.15, false },
 };
@@ -182,58 +159,12 @@ struct light {
 
 static struct light plain_lit[METHODS];
 
-static void place_points(float scale, struct renderer_point points[POINTS])
+static void write_scene(const struct hard_case *c, const char *path)
 {
-	static const float share[3] = { 0.15f, 0.5f, 0.85f };
+	const struct hard_scene scene = { .scale = c->scale, .intensity = { c->intensity },
+					  .gathers = 4, .steps = 16, .more = c->more };
 
-	for (int w = 0; w < WALLS; w++)
-		for (int k = 0; k < 9; k++) {
-			struct renderer_point *p = &points[9 * w + k];
-			int axis = w / 2, first = (axis + 1) % 3, second = (axis + 2) % 3;
-
-			memset(p, 0, sizeof *p);
-			p->position[axis] = w % 2 ? room[axis] * scale : 0;
-			p->position[first] = room[first] * share[k % 3] * scale;
-			p->position[second] = room[second] * share[k / 3] * scale;
-			p->normal[axis] = w % 2 ? -1 : 1;
-		}
-}
-
-static void write_scene(const struct hard_case *c, const char *path, const char *model)
-{
-	double s = (double)c->scale, power = (double)c->intensity * s * s;
-	FILE *file = fopen(path, "w");
-
-	assert_non_null(file);
-	fprintf(file, "name = \"hard\";\nmodel = \"%s\";\nmodel_scale = %.9g;\n", model, s);
-	fprintf(file, "near_m = %.9g;\nfar_m = %.9g;\nshadow_pixels = 256;\n",
-		fmin(fmax(0.05 * s, 0.001), 100), fmin(fmax(20 * s, 1), 1e6));
-	if (c->intensity > 0)
-		fprintf(file,
-			"lamps = ( { name = \"lamp\"; kind = \"spot\"; position = [%.9g, %.9g, %.9g];\n"
-			"direction = [-0.2, -1.0, -0.1]; cone_deg = 80.0; penumbra_deg = 20.0; radius_m = 0.0;\n"
-			"intensity = [%.9g, %.9g, %.9g]; } );\n",
-			(double)lamp_at[0] * s, (double)lamp_at[1] * s, (double)lamp_at[2] * s, power, power,
-			power);
-	fprintf(file, "cameras = ( { name = \"in\"; position = [%.9g, %.9g, %.9g]; target = [%.9g, %.9g, %.9g];\n"
-		      "vfov_deg = 75.0; pixels = [%d, %d]; } );\n",
-		3.7 * s, 2.2 * s, 3.7 * s, 1.5 * s, 0.9 * s, 1.5 * s, SIDE, SIDE);
-	fprintf(file, "gi = { method = \"surfels\"; surfels = { spacing_m = %.9g; links = 128; gathers = 4; "
-		      "probes = 8; };\nlpv = { lattice = 16; steps = 16; rsm_pixels = 64; }; };\n%s\n",
-		0.35 * s, c->more);
-	assert_int_equal(fclose(file), 0);
-}
-
-static double mean_of(const struct image *image)
-{
-	size_t values = (size_t)image->width * (size_t)image->height * 3;
-	double sum = 0;
-
-	for (size_t k = 0; k < values; k++) {
-		assert_true(isfinite(image->data[k]) && image->data[k] >= 0);
-		sum += (double)image->data[k];
-	}
-	return sum / (double)values;
+	hard_write_scene(&scene, path, "hard.glb");
 }
 
 static void trace(const struct scene *scene, const struct scene_file *file, bool camera,
@@ -270,7 +201,7 @@ static void trace(const struct scene *scene, const struct scene_file *file, bool
 		assert_int_equal(reference_render(reference, &view, &params, &film), GR_OK);
 		assert_int_equal(film.nonfinite, 0);
 		assert_int_equal(reference_film_images(&film, &picture, NULL, NULL), GR_OK);
-		out->picture = mean_of(&picture);
+		out->picture = hard_mean(&picture);
 		image_finish(&picture);
 		reference_film_finish(&film);
 	}
@@ -306,7 +237,7 @@ static void light(const struct scene *scene, const struct scene_file *file, bool
 		out->mean += out->at[i] / POINTS;
 	}
 	assert_int_equal(renderer_read_radiance(renderer, 0, &picture), GR_OK);
-	out->picture = camera ? mean_of(&picture) : 0;
+	out->picture = camera ? hard_mean(&picture) : 0;
 	image_finish(&picture);
 	assert_int_equal(renderer_read_rgb(renderer, rgb), GR_OK);
 	/* counts come some frames later */
@@ -376,11 +307,11 @@ static void every_case(void **state)
 		memset(&model, 0, sizeof model);
 		c->build(&model);
 		model_write(&model, model_path);
-		write_scene(c, scene_path, "hard.glb");
+		write_scene(c, scene_path);
 		assert_int_equal(scene_file_load(scene_path, &file, &diag), GR_OK);
 		assert_int_equal(scene_import(file, &scene, &diag), GR_OK);
 		gr_diag_finish(&diag);
-		place_points(c->scale, points);
+		hard_points(c->scale, points);
 		trace(scene, file, !c->no_camera, points, &traced);
 		printf("# %s: indirect light %.4g W/m^2, picture %.4g\n", c->name, traced.mean, traced.picture);
 		for (size_t m = 0; m < METHODS; m++) {
@@ -415,11 +346,11 @@ static void missing_texture(void **state)
 	snprintf(scene_path, sizeof scene_path, "%s/hard.scene", folder);
 	snprintf(model_path, sizeof model_path, "%s/hard.glb", folder);
 	memset(&model, 0, sizeof model);
-	plain(&model);
+	hard_plain(&model);
 	model.materials[1].texture = "gone.png";
 	/* nobody has texture coordinates for it either */
 	model_write(&model, model_path);
-	write_scene(&cases[0], scene_path, "hard.glb");
+	write_scene(&cases[0], scene_path);
 	assert_int_equal(scene_file_load(scene_path, &file, &diag), GR_OK);
 	assert_int_equal(scene_import(file, &scene, &diag), GR_ERR_CONFIG);
 	assert_null(scene);

@@ -2,8 +2,8 @@
 #ifndef GROTTO_TESTS_UNIT_H
 #define GROTTO_TESTS_UNIT_H
 
-#include <setjmp.h>
 #include <math.h>
+#include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
