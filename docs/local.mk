@@ -13,4 +13,4 @@ dist_doc_DATA += docs/bench.md docs/bench-box.svg docs/bench-box-closed.svg docs
 dist_doc_DATA += docs/view.md
 dist_doc_DATA += docs/results.md docs/goals.md docs/demo-room.png
 dist_doc_DATA += docs/comparing.md
-dist_doc_DATA += docs/baking.md
+dist_doc_DATA += docs/baking.md docs/hard-cases.md
