@@ -3,6 +3,7 @@
 
 #include "base/plain.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -77,7 +78,7 @@ void gi_plan_say(struct gi_plan *plan, const struct gi_facts *facts)
 		return;
 	}
 	if (plan->surfels > 0)
-		snprintf(count, sizeof count, "%s surfels, ", gr_plain(plan->surfels, 4).text);
+		snprintf(count, sizeof count, "%s surfels, ", gr_plain(round(plan->surfels), 4).text);
 	if (!plan->within && !plan->baked)
 		snprintf(over, sizeof over, "; the budget of %s ms is less than the least costs",
 			 gr_plain((double)plan->gi.budget_ms, 3).text);
