@@ -3,6 +3,7 @@ PROTOCOL_TEST_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS)
 PROTOCOL_TEST_LDADD = $(PROTOCOL_LIBS) $(CMOCKA_LIBS)
 
 PROTOCOL_TESTS = \
+	tests/unit/test_clock_offset \
 	tests/unit/test_cluster \
 	tests/unit/test_cluster_hostile \
 	tests/unit/test_fragment \
@@ -16,6 +17,9 @@ PROTOCOL_TESTS = \
 check_PROGRAMS += $(PROTOCOL_TESTS)
 TESTS += $(PROTOCOL_TESTS)
 
+tests_unit_test_clock_offset_SOURCES = tests/unit/test_clock_offset.c tests/unit/unit.h
+tests_unit_test_clock_offset_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_unit_test_clock_offset_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_cluster_SOURCES = tests/unit/test_cluster.c \
 	tests/unit/cluster_sim.c tests/unit/cluster_sim.h tests/unit/unit.h
 tests_unit_test_cluster_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
