@@ -6,6 +6,7 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/fragment.c protocol/fragment.h \
 	protocol/key.c protocol/key.h \
 	protocol/master.c protocol/master.h protocol/master_private.h \
+	protocol/master_clock.c \
 	protocol/master_join.c \
 	protocol/master_receive.c \
 	protocol/master_refuse.c \
@@ -13,6 +14,7 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/master_share.c \
 	protocol/message.c protocol/message.h \
 	protocol/node.c protocol/node.h protocol/node_private.h \
+	protocol/node_clock.c \
 	protocol/node_frame.c \
 	protocol/node_share.c \
 	protocol/outbox.c protocol/outbox.h \

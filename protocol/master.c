@@ -51,7 +51,7 @@ static int check_params(const struct fdp_master_params *p, const struct fdp_mast
 		return GR_ERR_RANGE;
 	if (!p->session || !p->node_count || p->node_count > FDP_MAX_NODES || !p->node_names ||
 	    p->datagram_max < FDP_DATAGRAM_MIN || p->datagram_max > FDP_DATAGRAM_MAX ||
-	    p->deadline_ns <= 0 || p->probe_ns < 0 || !p->evict_frames || !ops->send || !ops->event)
+	    p->deadline_ns <= 0 || p->probe_ns < 0 || p->swap_lead_most_ns < 0 || !p->evict_frames || !ops->send || !ops->event)
 		return GR_ERR_RANGE;
 	for (size_t i = 0; i < p->node_count; i++)
 		if (!p->node_names[i] || !p->node_names[i][0] ||
@@ -127,6 +127,8 @@ int fdp_master_create(struct fdp_master **out, const struct fdp_master_params *p
 		fdp_master_destroy(&m);
 		return result;
 	}
+	for (size_t i = 0; i < params->node_count; i++)
+		fdp_master_clock_forget(&m->peers[i]);
 	remember_hash(m);
 	fdp_master_begin_repairs(m);
 	*out = m;
@@ -163,6 +165,7 @@ void fdp_master_announce(struct fdp_master *m, int to, enum fdp_kind kind)
 	};
 
 	fdp_master_say_slices(m, kind, &a);
+	fdp_master_say_time(m, to, &a);
 	fdp_outbox_send(&m->out, to, kind,
 			fdp_announce_encode(&a, fdp_outbox_body(&m->out), FDP_BODY_MAX));
 }
@@ -267,6 +270,7 @@ int fdp_master_begin(struct fdp_master *m, const struct param_state *state, uint
 		return GR_ERR_STATE;
 	if (frame <= m->frame || param_newest(state) > frame)
 		return GR_ERR_RANGE;
+	m->now_ns = now_ns;
 	param_state_copy(m->state, state);
 	m->previous_frame = m->frame;
 	m->previous_hash = m->hash;
@@ -316,7 +320,7 @@ static void mark_late(struct fdp_master *m)
 
 void fdp_master_finish_if_over(struct fdp_master *m, int64_t now_ns)
 {
-	const struct fdp_master_event swap = {
+	struct fdp_master_event swap = {
 		.kind = FDP_MASTER_SWAP, .node = FDP_TO_ALL, .frame = m->frame
 	};
 	uint64_t live;
@@ -328,6 +332,7 @@ void fdp_master_finish_if_over(struct fdp_master *m, int64_t now_ns)
 	m->swapped = m->frame;
 	m->swapped_ns = now_ns;
 	live = fdp_master_mask(m, fdp_peer_counts);
+	m->swap_ns = swap.swap_ns = fdp_master_swap_time(m, live, now_ns);
 	if (live) {
 		fdp_master_announce_to(m, live, FDP_SWAP);
 		if (fdp_master_twice(m))
@@ -374,6 +379,7 @@ static void send_beacon(struct fdp_master *m)
 
 void fdp_master_tick(struct fdp_master *m, int64_t now_ns)
 {
+	m->now_ns = now_ns;
 	tend_joiners(m, now_ns);
 	if (now_ns >= m->keepalive_at) {
 		m->keepalive_at = now_ns + FDP_KEEPALIVE_NS;
@@ -458,6 +464,14 @@ void fdp_master_peer(const struct fdp_master *m, size_t node, struct fdp_peer_st
 		return;
 	*out = m->peers[node].status;
 	out->state = m->peers[node].state;
+}
+
+void fdp_master_clock(const struct fdp_master *m, size_t node, int64_t now_ns,
+		      struct fdp_clock_estimate *out)
+{
+	*out = (struct fdp_clock_estimate){ .known = false };
+	if (node < m->params.node_count)
+		fdp_clock_estimate(&m->peers[node].clock, now_ns, out);
 }
 
 void fdp_master_counters(const struct fdp_master *m, struct fdp_counters *out)

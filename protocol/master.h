@@ -13,6 +13,7 @@
 #ifndef GROTTO_PROTOCOL_MASTER_H
 #define GROTTO_PROTOCOL_MASTER_H
 
+#include "protocol/clock_offset.h"
 #include "protocol/key.h"
 #include "protocol/params.h"
 
@@ -51,6 +52,7 @@ struct fdp_master_event {
 	enum fdp_master_event_kind kind;
 	int node; /* -1 when about all */
 	uint64_t frame;
+	int64_t swap_ns; /* FDP_MASTER_SWAP: when it is to be shown; 0: when told */
 	uint64_t ours, theirs;
 	const char *reason; /* valid during the call */
 };
@@ -66,6 +68,15 @@ struct fdp_contents {
 	size_t layout_count, scene_count;
 };
 
+/* When a node shows a frame. */
+enum fdp_swap {
+	FDP_SWAP_AUTO,      /* at a time, when all live nodes know it well; else when told */
+	FDP_SWAP_MESSAGE,   /* when told */
+	FDP_SWAP_SCHEDULED, /* at a time, but for nodes that do not know it */
+};
+/* A clock that may be off by more than this is no good for a time to swap at. */
+#define FDP_SWAP_ERROR_MOST_NS INT64_C(1000000)
+
 struct fdp_master_params {
 	uint64_t session; /* random, new at every start, not 0 */
 	uint8_t key[FDP_KEY_BYTES];
@@ -77,6 +88,8 @@ struct fdp_master_params {
 	int64_t probe_ns;    /* ask who has not acknowledged after this; 0: deadline/8, 5 ms at most */
 	unsigned evict_frames;
 	bool multicast; /* FDP_TO_ALL is one send on the wire, not one a node */
+	enum fdp_swap swap;
+	int64_t swap_lead_most_ns; /* a swap's time is at most so far ahead of its SWAP */
 	/* Room for the light that nodes share out, all slices together; 0: none is, slices are bad. At most FDP_SHARE_MAX. */
 	size_t share_bytes;
 };
@@ -133,6 +146,9 @@ struct fdp_peer_status {
 	int64_t last_heard_ns;
 	int64_t ready_after_ns;    /* last READY, from fdp_master_begin */
 	int64_t swap_local_ns;     /* node's own CLOCK_MONOTONIC when it swapped `swapped_frame` */
+	int64_t swap_ns;           /* the same by the master's clock, as estimated then; 0: not known */
+	uint32_t path_ns;          /* the last SWAP's way, until the node had it in hand; 0: not known */
+	uint32_t swaps_late;       /* SWAPs that it had in hand after their time */
 	uint64_t swapped_frame;
 	uint32_t render_us;        /* GPU and CPU time the node says it took */
 	uint64_t slices, slices_late, slice_bytes; /* of the light, from it, whole; after SWAP */
@@ -163,6 +179,11 @@ int fdp_master_begin(struct fdp_master *master, const struct param_state *state,
  */
 int fdp_master_receive(struct fdp_master *master, const uint8_t *bytes, size_t len, int64_t now_ns,
 		       bool *out_fresh);
+/*
+ * The kernel's receive time of the datagram that the next fdp_master_receive
+ * is given, where it has one: waking up is then no part of the way.
+ */
+void fdp_master_arrived(struct fdp_master *master, int64_t arrived_ns);
 /* In ops.send: the node whose datagram is answered; -1 outside of fdp_master_receive. */
 int fdp_master_answers(const struct fdp_master *master);
 /* Does what time asks for: probes, deadline, evictions. */
@@ -183,6 +204,9 @@ size_t fdp_master_present(const struct fdp_master *master);
 void fdp_master_leave(struct fdp_master *master, int64_t now_ns);
 uint64_t fdp_master_hash(const struct fdp_master *master);
 void fdp_master_peer(const struct fdp_master *master, size_t node, struct fdp_peer_status *out);
+/* Where a node's clock stands beside ours. */
+void fdp_master_clock(const struct fdp_master *master, size_t node, int64_t now_ns,
+		      struct fdp_clock_estimate *out);
 void fdp_master_counters(const struct fdp_master *master, struct fdp_counters *out);
 /* Also among how many nodes the light is divided in this frame, 0: it is not. */
 unsigned fdp_master_share(const struct fdp_master *master, struct fdp_share_counts *out);

@@ -94,6 +94,7 @@ static void admit(struct fdp_master *m, unsigned node, const struct fdp_header *
 		.last_heard_ns = now_ns, .plan = join->plan,
 		.plan_cost = join->plan_cost, .plan_error = join->plan_error,
 	};
+	fdp_master_clock_forget(peer);
 	peer->synced = peer->wants_snapshot = false;
 	peer->missed_row = 0;
 	peer->mismatch_frame = 0;

@@ -1,6 +1,6 @@
 /*
  * Inside the master's half of FDP: master.c has the frame, master_receive.c
- * what arrives, master_join.c who may take part and master_refuse.c why not,
+ * what arrives, master_clock.c time, master_join.c who may take part and master_refuse.c why not,
  * master_repair.c what is sent again, master_share.c the light that the nodes share out.
  */
 #ifndef GROTTO_PROTOCOL_MASTER_PRIVATE_H
@@ -29,6 +29,8 @@
 #define FDP_LOSS_MAX 256
 #define FDP_SAID_FRAMES 64 /* SWAP says which slices there are until so long after the last change */
 
+#define FDP_PATHS 64 /* ways of a SWAP that its lead is measured by */
+
 struct fdp_peer {
 	enum fdp_peer_state state;
 	struct fdp_peer_status status;
@@ -43,6 +45,11 @@ struct fdp_peer {
 	int64_t snapshot_ns; /* last sent */
 	int64_t told_ns;     /* a dead one was told so */
 	int64_t refused_ns;
+	struct fdp_clock clock;     /* the node's beside ours */
+	bool echo_due;              /* a report came that was not said back yet */
+	int64_t echo_sent_ns, echo_arrived_ns; /* its clock, ours */
+	uint32_t path_ns[FDP_PATHS]; /* of its last SWAPs */
+	uint64_t path_count;
 	char refused[FDP_REASON_MAX];
 };
 
@@ -65,6 +72,10 @@ struct fdp_master {
 	bool underway;
 	uint64_t swapped;
 	int64_t swapped_ns;
+	int64_t swap_ns;    /* when `swapped` is to be shown; 0: at once */
+	int64_t now_ns;     /* of the call that is being served: what is sent bears it */
+	int64_t arrived_ns; /* of the next datagram, by the kernel; 0: not told */
+	unsigned echo_next; /* node whose turn it is to be answered in a datagram to all */
 	struct fdp_barrier barrier;
 
 	struct fdp_letter delta, snapshot;
@@ -120,6 +131,16 @@ enum fdp_verdict fdp_master_on_lack(struct fdp_master *m, unsigned node, const u
 void fdp_master_note_slice(struct fdp_master *m, unsigned node, uint64_t frame, int64_t now_ns);
 /* Which slices are whole, into a PROBE or SWAP. */
 void fdp_master_say_slices(const struct fdp_master *m, enum fdp_kind kind, struct fdp_announce *a);
+
+/* Its clock and ways are another's from now on. */
+void fdp_master_clock_forget(struct fdp_peer *peer);
+void fdp_master_note_clock(struct fdp_master *m, unsigned node, const struct fdp_report *report,
+			   int64_t arrived_ns);
+void fdp_master_note_path(struct fdp_peer *peer, uint32_t path_ns);
+/* Time stamps, into a PROBE or SWAP to a node or to all. */
+void fdp_master_say_time(struct fdp_master *m, int to, struct fdp_announce *a);
+/* When these nodes are to swap, if they are told now; 0: at once. */
+int64_t fdp_master_swap_time(const struct fdp_master *m, uint64_t live, int64_t now_ns);
 
 static inline bool fdp_master_twice(const struct fdp_master *m)
 {

@@ -78,16 +78,25 @@ static void on_ready(struct fdp_master *m, unsigned node, const struct fdp_repor
 	fdp_master_finish_if_over(m, now_ns);
 }
 
+static void note_swap(struct fdp_peer *peer, const struct fdp_report *report, int64_t now_ns)
+{
+	struct fdp_clock_estimate estimate;
+
+	if (report->swapped_count <= peer->status.swapped)
+		return;
+	peer->status.swapped = report->swapped_count;
+	peer->status.swapped_frame = report->swapped_frame;
+	peer->status.swap_local_ns = report->swap_ns;
+	fdp_clock_estimate(&peer->clock, now_ns, &estimate);
+	peer->status.swap_ns = estimate.known ? fdp_clock_to_ours(&peer->clock, report->swap_ns) : 0;
+	fdp_master_note_path(peer, report->path_ns);
+}
+
 static void on_report(struct fdp_master *m, unsigned node, enum fdp_kind kind,
 		      const struct fdp_report *report, int64_t now_ns)
 {
-	struct fdp_peer_status *status = &m->peers[node].status;
-
-	if (report->swapped_count > status->swapped) {
-		status->swapped = report->swapped_count;
-		status->swapped_frame = report->swapped_frame;
-		status->swap_local_ns = report->swap_ns;
-	}
+	fdp_master_note_clock(m, node, report, m->arrived_ns);
+	note_swap(&m->peers[node], report, now_ns);
 	fdp_master_note_slice(m, node, report->slice, now_ns);
 	if (kind == FDP_SWAPPED || !state_agrees(m, node, report, now_ns))
 		return;
@@ -185,6 +194,10 @@ int fdp_master_receive(struct fdp_master *m, const uint8_t *bytes, size_t len, i
 	struct fdp_header h;
 	enum fdp_verdict verdict = fdp_gate_open(&m->gate, bytes, len, &h);
 
+	m->now_ns = now_ns;
+	/* A time to come, or long gone, is no receive time of this datagram. */
+	if (m->arrived_ns > now_ns || m->arrived_ns < now_ns - FDP_ARRIVED_MOST_NS)
+		m->arrived_ns = now_ns;
 	m->counters.datagrams_in++;
 	m->counters.bytes_in += len;
 	if (verdict == FDP_GOOD) {
@@ -194,6 +207,7 @@ int fdp_master_receive(struct fdp_master *m, const uint8_t *bytes, size_t len, i
 	}
 	if (out_fresh)
 		*out_fresh = verdict == FDP_GOOD && fresh;
+	m->arrived_ns = 0;
 	fdp_count_bad(&m->counters, verdict);
 	return verdict == FDP_GOOD ? h.sender : fdp_verdict_result(verdict);
 }

@@ -184,8 +184,12 @@ size_t fdp_report_encode(const struct fdp_report *m, uint8_t *bytes, size_t size
 	gr_write_u64(&w, m->swapped_count);
 	gr_write_u64(&w, (uint64_t)m->swap_ns);
 	gr_write_u32(&w, m->render_us);
-	gr_write_u32(&w, 0);
+	gr_write_u32(&w, m->held_ns);
 	gr_write_u64(&w, m->slice);
+	gr_write_u64(&w, (uint64_t)m->sent_ns);
+	gr_write_u64(&w, (uint64_t)m->echo_ns);
+	gr_write_u32(&w, m->path_ns);
+	gr_write_u32(&w, m->swaps_late);
 	return written(&w);
 }
 
@@ -199,9 +203,14 @@ int fdp_report_decode(const uint8_t *bytes, size_t len, struct fdp_report *out)
 	out->swapped_count = gr_read_u64(&r);
 	out->swap_ns = (int64_t)gr_read_u64(&r);
 	out->render_us = gr_read_u32(&r);
-	if (gr_read_u32(&r))
-		return GR_ERR_FORMAT;
+	out->held_ns = gr_read_u32(&r);
 	out->slice = gr_read_u64(&r);
+	out->sent_ns = (int64_t)gr_read_u64(&r);
+	out->echo_ns = (int64_t)gr_read_u64(&r);
+	out->path_ns = gr_read_u32(&r);
+	out->swaps_late = gr_read_u32(&r);
+	if (!out->echo_ns && out->held_ns)
+		return GR_ERR_FORMAT;
 	return finished(&r);
 }
 
@@ -251,7 +260,31 @@ size_t fdp_announce_encode(const struct fdp_announce *m, uint8_t *bytes, size_t 
 	gr_write_u16(&w, m->slices);
 	for (unsigned i = 0; i < m->slices; i++)
 		gr_write_u32(&w, m->age[i]);
+	gr_write_u64(&w, (uint64_t)m->sent_ns);
+	gr_write_u64(&w, (uint64_t)m->swap_ns);
+	gr_write_u16(&w, m->echoes);
+	for (unsigned i = 0; i < m->echoes; i++) {
+		gr_write_u16(&w, m->echo[i].node);
+		gr_write_u32(&w, m->echo[i].held_ns);
+		gr_write_u64(&w, (uint64_t)m->echo[i].sent_ns);
+	}
 	return written(&w);
+}
+
+static bool read_echoes(struct gr_reader *r, struct fdp_announce *out)
+{
+	memset(out->echo, 0, sizeof out->echo);
+	out->echoes = gr_read_u16(r);
+	if (out->echoes > FDP_ECHOES_MOST)
+		return false;
+	for (unsigned i = 0; i < out->echoes; i++) {
+		out->echo[i].node = gr_read_u16(r);
+		out->echo[i].held_ns = gr_read_u32(r);
+		out->echo[i].sent_ns = (int64_t)gr_read_u64(r);
+		if (out->echo[i].node >= FDP_MAX_NODES)
+			return false;
+	}
+	return true;
 }
 
 int fdp_announce_decode(const uint8_t *bytes, size_t len, struct fdp_announce *out)
@@ -271,6 +304,10 @@ int fdp_announce_decode(const uint8_t *bytes, size_t len, struct fdp_announce *o
 		return GR_ERR_FORMAT;
 	for (unsigned i = 0; i < FDP_MAX_NODES; i++)
 		out->age[i] = i < out->slices ? gr_read_u32(&r) : FDP_AGE_NONE;
+	out->sent_ns = (int64_t)gr_read_u64(&r);
+	out->swap_ns = (int64_t)gr_read_u64(&r);
+	if (!read_echoes(&r, out))
+		return GR_ERR_FORMAT;
 	if (out->count > FDP_FRAGMENTS_MAX || !out->message != !out->count ||
 	    out->swapped > out->frame || out->live & ~out->present || out->flags & ~FDP_TWICE)
 		return GR_ERR_FORMAT;

@@ -61,6 +61,14 @@ struct fdp_report {
 	int64_t swap_ns; /* node's CLOCK_MONOTONIC at swapped_frame */
 	uint32_t render_us;
 	uint64_t slice; /* frame of the newest slice that the node has made; 0: none in this division */
+	/*
+	 * For the clocks (clock_offset.h): when this left, by the node's; sent_ns of
+	 * the newest PROBE or SWAP that it has, 0: none, and how long ago that came.
+	 */
+	int64_t sent_ns, echo_ns;
+	uint32_t held_ns;
+	uint32_t path_ns;    /* from the last SWAP's leaving until the node had it in hand; 0: not known */
+	uint32_t swaps_late; /* SWAPs since the join that were in hand after their time */
 };
 
 #define FDP_NACK_SNAPSHOT 1u /* cannot use what came: send the whole state */
@@ -74,6 +82,16 @@ struct fdp_nack {
 #define FDP_TWICE 1u /* the way is lossy: READY and NACK are worth sending twice */
 /* How old a slice is that nobody has made yet, or that is older than can be said. */
 #define FDP_AGE_NONE UINT32_MAX
+/* A node's report, said back: when it left (node's clock), and how long ago it came. */
+struct fdp_echo {
+	uint16_t node;
+	uint32_t held_ns;
+	int64_t sent_ns;
+};
+#define FDP_ECHOES_MOST 4
+/* A datagram may wait so long in its socket for a busy receiver. */
+#define FDP_ARRIVED_MOST_NS INT64_C(1000000000)
+
 /* PROBE and SWAP. */
 struct fdp_announce {
 	uint64_t frame, swapped; /* under way (or last), last swapped */
@@ -85,6 +103,10 @@ struct fdp_announce {
 	uint64_t since;
 	uint16_t slices;
 	uint32_t age[FDP_MAX_NODES]; /* frame less the slice's, or FDP_AGE_NONE */
+	int64_t sent_ns; /* when this left, master's clock */
+	int64_t swap_ns; /* when `swapped` is to be shown, master's clock; 0: at once */
+	uint16_t echoes;
+	struct fdp_echo echo[FDP_ECHOES_MOST];
 };
 
 /*

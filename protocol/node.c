@@ -112,6 +112,7 @@ int fdp_node_create(struct fdp_node **out, const struct fdp_node_params *params,
 		fdp_node_destroy(&n);
 		return result;
 	}
+	fdp_node_clock_reset(n);
 	randombytes_buf(n->nonce, sizeof n->nonce);
 	write_items(&n->params.contents, n->items);
 	*out = n;
@@ -302,6 +303,8 @@ int fdp_node_receive(struct fdp_node *n, const uint8_t *bytes, size_t len, int64
 	struct fdp_header h;
 	enum fdp_verdict verdict = fdp_gate_open(&n->gate, bytes, len, &h);
 
+	if (n->arrived_ns > now_ns || n->arrived_ns < now_ns - FDP_ARRIVED_MOST_NS)
+		n->arrived_ns = now_ns;
 	n->counters.datagrams_in++;
 	n->counters.bytes_in += len;
 	/*
@@ -320,6 +323,7 @@ int fdp_node_receive(struct fdp_node *n, const uint8_t *bytes, size_t len, int64
 		else
 			verdict = in_session(n, &h, body, now_ns);
 	}
+	n->arrived_ns = 0;
 	fdp_count_bad(&n->counters, verdict);
 	return fdp_verdict_result(verdict);
 }

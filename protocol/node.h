@@ -5,7 +5,7 @@
  *   event FDP_NODE_JOINED          the master took us; a snapshot follows
  *   event FDP_NODE_FRAME           state of `frame` is applied: render it
  *   fdp_node_ready(n, frame, ...)  the GPU has finished
- *   event FDP_NODE_SWAP            show `frame` now
+ *   event FDP_NODE_SWAP            show `frame`, at the time that it says
  *   fdp_node_swapped(n, frame, ...)
  *
  * Without a master it asks to join every join_ns, for ever. A frame whose
@@ -34,6 +34,7 @@ enum fdp_node_event_kind {
 struct fdp_node_event {
 	enum fdp_node_event_kind kind;
 	uint64_t frame;
+	int64_t at_ns; /* FDP_NODE_SWAP: when to show it, our clock; 0: now */
 	uint64_t ours, theirs;
 	const char *reason;
 };
@@ -66,6 +67,8 @@ int fdp_node_create(struct fdp_node **out, const struct fdp_node_params *params,
 		    const struct fdp_node_ops *ops);
 void fdp_node_destroy(struct fdp_node **node);
 int fdp_node_receive(struct fdp_node *node, const uint8_t *bytes, size_t len, int64_t now_ns);
+/* As fdp_master_arrived. */
+void fdp_node_arrived(struct fdp_node *node, int64_t arrived_ns);
 void fdp_node_tick(struct fdp_node *node, int64_t now_ns);
 int64_t fdp_node_next(const struct fdp_node *node);
 /* The state of the frame of the last FDP_NODE_FRAME; valid until the next call of receive. */
@@ -98,6 +101,8 @@ void fdp_node_share(const struct fdp_node *node, struct fdp_share_counts *out);
 
 void fdp_node_leave(struct fdp_node *node, int64_t now_ns);
 enum fdp_node_state fdp_node_status(const struct fdp_node *node);
+/* Where the master's clock stands beside ours. */
+void fdp_node_clock(const struct fdp_node *node, int64_t now_ns, struct fdp_clock_estimate *out);
 uint64_t fdp_node_hash(const struct fdp_node *node);
 void fdp_node_counters(const struct fdp_node *node, struct fdp_counters *out);
 

@@ -14,14 +14,16 @@ void fdp_node_frame_reset(struct fdp_node *n)
 	n->swapped_frame = n->swapped_count = 0;
 	n->swap_ns = 0;
 	n->nacked_ns = 0;
+	fdp_node_clock_reset(n);
 	fdp_reassembly_reset(&n->delta);
 	fdp_reassembly_reset(&n->snapshot);
 	fdp_node_share_reset(n);
 }
 
-static void send_report(struct fdp_node *n, enum fdp_kind kind, uint64_t frame, uint64_t hash)
+static void send_report(struct fdp_node *n, enum fdp_kind kind, uint64_t frame, uint64_t hash,
+			int64_t now_ns)
 {
-	const struct fdp_report report = {
+	struct fdp_report report = {
 		.frame = frame,
 		.hash = hash,
 		.swapped_frame = n->swapped_frame,
@@ -31,6 +33,7 @@ static void send_report(struct fdp_node *n, enum fdp_kind kind, uint64_t frame, 
 		.slice = n->slice_frame,
 	};
 
+	fdp_node_say_time(n, &report, now_ns);
 	fdp_outbox_send(&n->out, FDP_TO_ALL, kind,
 			fdp_report_encode(&report, fdp_outbox_body(&n->out), FDP_BODY_MAX));
 }
@@ -38,7 +41,7 @@ static void send_report(struct fdp_node *n, enum fdp_kind kind, uint64_t frame, 
 static void send_ready(struct fdp_node *n, int64_t now_ns)
 {
 	n->current.asked_ns = now_ns;
-	send_report(n, FDP_READY, n->current.frame, n->current.hash);
+	send_report(n, FDP_READY, n->current.frame, n->current.hash, now_ns);
 }
 
 static void send_nack(struct fdp_node *n, const struct fdp_nack *nack, int64_t now_ns)
@@ -59,18 +62,24 @@ static void ask_for_snapshot(struct fdp_node *n, uint64_t frame, int64_t now_ns)
 /* Says SWAP once for a frame that is drawn and that the room has swapped. */
 static void swap_if_due(struct fdp_node *n)
 {
+	struct fdp_node_event event = { .kind = FDP_NODE_SWAP };
+
 	if (!n->current.ready || n->current.swapped || n->swap_seen < n->current.frame)
 		return;
 	n->current.swapped = true;
-	fdp_node_say(n, FDP_NODE_SWAP, n->current.frame);
+	event.frame = n->current.frame;
+	event.at_ns = n->swap_seen == n->current.frame ? n->swap_at_ns : 0;
+	n->ops.event(n->ops.ctx, &event);
 }
 
 static void start_frame(struct fdp_node *n, uint64_t frame)
 {
 	/* A new frame means that the one before was swapped, even if we missed the word. */
 	if (n->current.frame && frame > n->current.frame) {
-		if (n->swap_seen < n->current.frame)
+		if (n->swap_seen < n->current.frame) {
 			n->swap_seen = n->current.frame;
+			n->swap_at_ns = 0;
+		}
 		swap_if_due(n);
 	}
 	n->current = (struct fdp_node_frame){
@@ -107,7 +116,7 @@ static enum fdp_verdict apply(struct fdp_node *n, const struct fdp_state_head *h
 	if (hash != head->hash) {
 		say_mismatch(n, head->frame, hash, head->hash);
 		/* The master compares too, and answers with a snapshot. */
-		send_report(n, FDP_ACK, head->frame, hash);
+		send_report(n, FDP_ACK, head->frame, hash, now_ns);
 		return FDP_GOOD;
 	}
 	n->scratch = n->state;
@@ -119,7 +128,7 @@ static enum fdp_verdict apply(struct fdp_node *n, const struct fdp_state_head *h
 		n->joined_sequence = sequence;
 	}
 	fdp_node_share_frame(n, head);
-	send_report(n, FDP_ACK, n->applied, n->hash);
+	send_report(n, FDP_ACK, n->applied, n->hash, now_ns);
 	if (fdp_node_in(n, head->live))
 		start_frame(n, head->frame);
 	return FDP_GOOD;
@@ -156,7 +165,7 @@ static enum fdp_verdict take_state(struct fdp_node *n, const struct fdp_header *
 		   (head.frame == n->applied && (!snapshot || head.hash == n->hash))) {
 		/* Old news; but who sends a snapshot has not heard what we hold. */
 		if (snapshot)
-			send_report(n, FDP_ACK, n->applied, n->hash);
+			send_report(n, FDP_ACK, n->applied, n->hash, now_ns);
 		return FDP_GOOD;
 	}
 	if (base > n->applied) {
@@ -184,13 +193,13 @@ static void nack_missing(struct fdp_node *n, const struct fdp_reassembly *r, int
 }
 
 /* The same snapshot again: our ACK was lost, or we could not use it the first time. */
-static void snapshot_again(struct fdp_node *n, const struct fdp_header *h)
+static void snapshot_again(struct fdp_node *n, const struct fdp_header *h, int64_t now_ns)
 {
 	if (h->kind != FDP_SNAPSHOT || h->message != n->snapshot.message ||
 	    fdp_reassembly_open(&n->snapshot) || h->index + 1 != h->count)
 		return;
 	if (n->status == FDP_NODE_LIVE)
-		send_report(n, FDP_ACK, n->applied, n->hash);
+		send_report(n, FDP_ACK, n->applied, n->hash, now_ns);
 	else
 		fdp_reassembly_reset(&n->snapshot); /* take it when it comes once more */
 }
@@ -207,7 +216,7 @@ enum fdp_verdict fdp_node_on_state(struct fdp_node *n, const struct fdp_header *
 	case FDP_FRAGMENT_BAD:
 		return FDP_BAD_FORMAT;
 	case FDP_FRAGMENT_AGAIN:
-		snapshot_again(n, h);
+		snapshot_again(n, h, now_ns);
 		return FDP_GOOD;
 	case FDP_FRAGMENT_PART:
 		if (r->have == 1)
@@ -255,8 +264,11 @@ enum fdp_verdict fdp_node_on_announce(struct fdp_node *n, const struct fdp_heade
 	if (n->status != FDP_NODE_LIVE || left_out(n, a.present, h->sequence))
 		return FDP_GOOD;
 	n->twice = a.flags & FDP_TWICE;
-	if (a.swapped > n->swap_seen)
+	fdp_node_note_clock(n, &a, n->arrived_ns);
+	if (a.swapped > n->swap_seen) {
 		n->swap_seen = a.swapped;
+		fdp_node_note_swap(n, &a, now_ns);
+	}
 	swap_if_due(n);
 	fdp_node_note_slices(n, &a, now_ns);
 	if (a.frame > n->applied && fdp_node_in(n, a.live))
@@ -266,7 +278,7 @@ enum fdp_verdict fdp_node_on_announce(struct fdp_node *n, const struct fdp_heade
 	if (n->current.ready && !n->current.swapped && n->current.frame == n->applied)
 		send_ready(n, now_ns);
 	else
-		send_report(n, FDP_ACK, n->applied, n->hash);
+		send_report(n, FDP_ACK, n->applied, n->hash, now_ns);
 	return FDP_GOOD;
 }
 
@@ -309,11 +321,10 @@ void fdp_node_ready(struct fdp_node *n, uint64_t frame, uint32_t render_us, int6
 
 void fdp_node_swapped(struct fdp_node *n, uint64_t frame, int64_t swap_ns, int64_t now_ns)
 {
-	(void)now_ns;
 	if (n->status != FDP_NODE_LIVE || frame <= n->swapped_frame)
 		return;
 	n->swapped_frame = frame;
 	n->swapped_count++;
 	n->swap_ns = swap_ns;
-	send_report(n, FDP_SWAPPED, frame, 0);
+	send_report(n, FDP_SWAPPED, frame, 0, now_ns);
 }

@@ -1,6 +1,6 @@
 /*
  * Inside the node's half of FDP: node.c has membership, node_frame.c the
- * frame, node_share.c the light that the nodes share out.
+ * frame, node_clock.c time, node_share.c the light that the nodes share out.
  */
 #ifndef GROTTO_PROTOCOL_NODE_PRIVATE_H
 #define GROTTO_PROTOCOL_NODE_PRIVATE_H
@@ -60,6 +60,12 @@ struct fdp_node {
 	uint64_t swapped_frame, swapped_count;
 	int64_t swap_ns;
 
+	struct fdp_clock clock;           /* the master's beside ours */
+	int64_t arrived_ns;               /* of the next datagram, by the kernel; 0: not told */
+	int64_t echo_ns, echo_arrived_ns; /* the newest PROBE or SWAP: its sent_ns, our clock */
+	int64_t swap_at_ns;               /* when swap_seen is to be shown, our clock; 0: at once */
+	uint32_t path_ns, swaps_late;     /* as in fdp_report */
+
 	/* One each for DELTA and SNAPSHOT. */
 	struct fdp_reassembly delta, snapshot;
 	int64_t nacked_ns;
@@ -97,6 +103,13 @@ enum fdp_verdict fdp_node_on_lack(struct fdp_node *n, const uint8_t *body, size_
 void fdp_node_note_slices(struct fdp_node *n, const struct fdp_announce *a, int64_t now_ns);
 void fdp_node_share_tick(struct fdp_node *n, int64_t now_ns);
 int64_t fdp_node_share_next(const struct fdp_node *n);
+
+void fdp_node_clock_reset(struct fdp_node *n);
+/* Time stamps, into a report that leaves now. */
+void fdp_node_say_time(const struct fdp_node *n, struct fdp_report *report, int64_t now_ns);
+void fdp_node_note_clock(struct fdp_node *n, const struct fdp_announce *a, int64_t arrived_ns);
+/* The swap that it announces is news: when it is due. */
+void fdp_node_note_swap(struct fdp_node *n, const struct fdp_announce *a, int64_t now_ns);
 
 void fdp_node_frame_tick(struct fdp_node *n, int64_t now_ns);
 int64_t fdp_node_frame_next(const struct fdp_node *n);

@@ -21,7 +21,7 @@
 #define FDP_MAC_AT 48
 #define FDP_MAC_BYTES 16
 #define FDP_SENDER_MASTER 0xffff
-#define FDP_DATAGRAM_MIN 384   /* least datagram_max: a JOIN in one piece */
+#define FDP_DATAGRAM_MIN 448   /* least datagram_max: a JOIN, or a SWAP of 64 slices, in one piece */
 #define FDP_DATAGRAM_MAX 65507 /* what UDP over IPv4 can hold */
 #define FDP_MESSAGE_MAX 65536
 #define FDP_FRAGMENTS_MAX 512

@@ -2,6 +2,8 @@
 
 #include "base/result.h"
 
+#include <math.h>
+
 static const struct gr_item layout_items[] = {
 	{ "number of walls", { 4 } },
 	{ "walls[0] (front)", { 1, 2, 3, 4, 5, 6, 7, 8 } },
@@ -19,6 +21,22 @@ static const struct fdp_contents sim_contents = {
 static double uniform(struct sim *s)
 {
 	return unit_random_range(&s->random, 0, 1);
+}
+
+int64_t sim_node_time(const struct sim_node *n)
+{
+	const int64_t now_ns = n->sim->now_ns;
+
+	return now_ns + n->clock_ns + llrint(n->clock_ppm * 1e-6 * (double)(now_ns - SIM_EPOCH_NS));
+}
+
+/* The first time at which a node's clock has come so far. */
+static int64_t true_time(const struct sim_node *n, int64_t local_ns)
+{
+	if (local_ns == INT64_MAX || (!n->clock_ns && n->clock_ppm == 0))
+		return local_ns;
+	local_ns -= n->clock_ns + SIM_EPOCH_NS;
+	return SIM_EPOCH_NS + 2 + (int64_t)ceil((double)local_ns / (1 + n->clock_ppm * 1e-6));
 }
 
 static bool before(const struct sim_packet *a, const struct sim_packet *b)
@@ -85,7 +103,8 @@ static void carry(struct sim *s, int to, int about, const uint8_t *bytes, size_t
 			continue;
 		}
 		heap_push(s, (struct sim_packet){
-			s->now_ns + s->delay_ns + (int64_t)((double)s->jitter_ns * uniform(s)),
+			s->now_ns + s->delay_ns + (to < 0 ? 0 : s->slow_ns) +
+				(int64_t)((double)s->jitter_ns * uniform(s)),
 			s->order++, to, len, copy });
 	}
 }
@@ -120,6 +139,9 @@ static void master_event(void *ctx, const struct fdp_master_event *e)
 	case FDP_MASTER_SWAP:
 		assert_int_equal(e->frame, s->frame);
 		s->swapped++;
+		s->scheduled += e->swap_ns != 0;
+		if (e->swap_ns)
+			assert_true(e->swap_ns > s->now_ns && e->swap_ns <= s->now_ns + SIM_LEAD_MOST_NS);
 		s->begin_at_ns = s->begun_ns + SIM_PERIOD_NS > s->now_ns ? s->begun_ns + SIM_PERIOD_NS
 									  : s->now_ns;
 		break;
@@ -132,6 +154,34 @@ static void node_send(void *ctx, const uint8_t *bytes, size_t len)
 
 	assert_true(len <= n->sim->datagram_max);
 	carry(n->sim, -1, n->index, bytes, len);
+}
+
+static void note_shown(struct sim *s, uint64_t frame)
+{
+	if (frame != s->shown_frame) {
+		s->shown_frame = frame;
+		s->shown = 0;
+		s->shown_first_ns = s->now_ns;
+	}
+	s->shown_last_ns = s->now_ns;
+	if (++s->shown < s->node_count)
+		return;
+	if (s->spread_count == s->spread_room) {
+		s->spread_room = s->spread_room ? s->spread_room * 2 : 1024;
+		s->spread_ns = realloc(s->spread_ns, s->spread_room * sizeof *s->spread_ns);
+		assert_non_null(s->spread_ns);
+	}
+	s->spread_ns[s->spread_count++] = s->shown_last_ns - s->shown_first_ns;
+}
+
+/* What the daemon does when the time has come. */
+static void show(struct sim_node *n)
+{
+	const uint64_t frame = n->swap;
+
+	n->swap = 0;
+	note_shown(n->sim, frame);
+	fdp_node_swapped(n->node, frame, sim_node_time(n), sim_node_time(n));
 }
 
 static void note_delivery(struct sim *s)
@@ -179,7 +229,12 @@ static void node_event(void *ctx, const struct fdp_node_event *e)
 		assert_true(e->frame > n->last_swap);
 		assert_int_equal(e->frame, n->last_frame);
 		assert_int_equal(n->drawing, 0); /* drawn, or it may not be shown */
+		/* All live ones are ready for it, or its deadline has passed. */
+		if (s->master && n->node->gate.session == s->session)
+			assert_true(e->frame <= s->master->swapped);
+		assert_int_equal(n->swap, 0);
 		n->last_swap = n->swap = e->frame;
+		n->swap_at_ns = e->at_ns;
 		n->swaps++;
 		break;
 	case FDP_NODE_REFUSED:
@@ -200,7 +255,7 @@ void sim_init(struct sim *s, size_t nodes, uint64_t seed)
 	memset(s, 0, sizeof *s);
 	s->random.state = seed * 2 + 1;
 	unit_random_u32(&s->random);
-	s->now_ns = INT64_C(1000000000000);
+	s->now_ns = SIM_EPOCH_NS;
 	s->delay_ns = 50000;
 	s->jitter_ns = 20000;
 	s->datagram_max = 1472;
@@ -226,6 +281,8 @@ void sim_start_master(struct sim *s)
 		.deadline_ns = SIM_DEADLINE_NS,
 		.evict_frames = s->evict_frames,
 		.multicast = s->multicast,
+		.swap = s->swap,
+		.swap_lead_most_ns = SIM_LEAD_MOST_NS,
 		.share_bytes = s->share_bytes,
 	};
 
@@ -319,9 +376,11 @@ static int64_t earliest(const struct sim *s)
 	for (size_t i = 0; i < s->node_count; i++) {
 		const struct sim_node *n = &s->nodes[i];
 
-		if (!n->node)
+		if (!n->node || n->asleep)
 			continue;
-		at = fdp_node_next(n->node);
+		at = true_time(n, fdp_node_next(n->node));
+		next = at < next ? at : next;
+		at = n->swap ? true_time(n, n->swap_at_ns) : INT64_MAX;
 		next = at < next ? at : next;
 		if (n->drawing && n->drawn_at_ns < next)
 			next = n->drawn_at_ns;
@@ -337,12 +396,8 @@ static void tend_node(struct sim *s, struct sim_node *n)
 	n->start = 0;
 	if (n->node && start && s->begin_light)
 		s->begin_light(n, start);
-	while (n->node && n->swap) {
-		const uint64_t frame = n->swap;
-
-		n->swap = 0;
-		fdp_node_swapped(n->node, frame, s->now_ns, s->now_ns);
-	}
+	while (n->node && n->swap && (!n->swap_at_ns || sim_node_time(n) >= n->swap_at_ns))
+		show(n);
 }
 
 static void deliver(struct sim *s, const struct sim_packet *p)
@@ -353,8 +408,8 @@ static void deliver(struct sim *s, const struct sim_packet *p)
 		if (s->master)
 			fdp_master_receive(s->master, p->bytes, p->len, s->now_ns, &fresh);
 		s->fresh += fresh;
-	} else if (s->nodes[p->to].node) {
-		fdp_node_receive(s->nodes[p->to].node, p->bytes, p->len, s->now_ns);
+	} else if (s->nodes[p->to].node && !s->nodes[p->to].asleep) {
+		fdp_node_receive(s->nodes[p->to].node, p->bytes, p->len, sim_node_time(&s->nodes[p->to]));
 		tend_node(s, &s->nodes[p->to]);
 	}
 	free(p->bytes);
@@ -362,7 +417,7 @@ static void deliver(struct sim *s, const struct sim_packet *p)
 
 static void step_node(struct sim *s, struct sim_node *n)
 {
-	if (!n->node)
+	if (!n->node || n->asleep)
 		return;
 	if (n->drawing && s->now_ns >= n->drawn_at_ns) {
 		const uint64_t frame = n->drawing;
@@ -370,14 +425,15 @@ static void step_node(struct sim *s, struct sim_node *n)
 		n->drawing = 0;
 		if (s->light_done)
 			s->light_done(n, frame);
-		fdp_node_ready(n->node, frame, 1000, s->now_ns);
+		fdp_node_ready(n->node, frame, 1000, sim_node_time(n));
 		tend_node(s, n);
 	}
-	if (s->now_ns >= fdp_node_next(n->node)) {
-		fdp_node_tick(n->node, s->now_ns);
+	tend_node(s, n);
+	if (sim_node_time(n) >= fdp_node_next(n->node)) {
+		fdp_node_tick(n->node, sim_node_time(n));
 		tend_node(s, n);
 		/* Or an event loop would spin. */
-		assert_true(fdp_node_next(n->node) > s->now_ns);
+		assert_true(fdp_node_next(n->node) > sim_node_time(n));
 	}
 }
 
@@ -474,6 +530,14 @@ int64_t sim_delivery_quantile(struct sim *s, double q)
 	return s->delivery_ns[(size_t)(q * (double)(s->delivery_count - 1))];
 }
 
+int64_t sim_spread_quantile(struct sim *s, double q)
+{
+	if (!s->spread_count)
+		return 0;
+	qsort(s->spread_ns, s->spread_count, sizeof *s->spread_ns, compare_ns);
+	return s->spread_ns[(size_t)(q * (double)(s->spread_count - 1))];
+}
+
 void sim_finish(struct sim *s)
 {
 	for (size_t i = 0; i < s->node_count; i++)
@@ -483,6 +547,7 @@ void sim_finish(struct sim *s)
 		free(heap_pop(s).bytes);
 	free(s->packets);
 	free(s->delivery_ns);
+	free(s->spread_ns);
 	param_state_destroy(&s->state);
 }
 

@@ -12,7 +12,9 @@
 
 #define SIM_MS INT64_C(1000000)
 #define SIM_PERIOD_NS INT64_C(16666667)
+#define SIM_LEAD_MOST_NS (SIM_PERIOD_NS / 4)
 #define SIM_DEADLINE_NS (33 * SIM_MS)
+#define SIM_EPOCH_NS INT64_C(1000000000000)
 #define SIM_STATES 256 /* frames whose state is remembered for comparison */
 
 struct sim_packet {
@@ -28,11 +30,15 @@ struct sim_node {
 	int index;
 	struct fdp_node *node; /* NULL: dead */
 	bool cut;              /* no datagram passes */
+	bool asleep;           /* its machine is suspended */
 	int64_t render_ns;     /* 0: drawn from 2..8 ms */
 	uint64_t drawing;      /* frame, 0 none */
 	int64_t drawn_at_ns;
 	uint64_t start; /* frame told, not yet begun to be drawn */
 	uint64_t swap;  /* told, not yet reported */
+	int64_t swap_at_ns; /* its clock; 0: at once */
+	int64_t clock_ns; /* its clock less the master's at SIM_EPOCH_NS */
+	double clock_ppm; /* what it gains from then on */
 	uint64_t frames, swaps, last_frame, last_swap, joined, lost, refused, mismatches, left;
 	char reason[FDP_REASON_MAX];
 };
@@ -43,6 +49,8 @@ struct sim {
 	double loss, duplicate;
 	int64_t delay_ns, jitter_ns;
 	size_t datagram_max;
+	enum fdp_swap swap;
+	int64_t slow_ns; /* what the way to the nodes takes longer than the way from them */
 	bool multicast, lamps; /* lamps: the larger parameters change every frame too */
 	unsigned evict_frames;
 
@@ -68,6 +76,13 @@ struct sim {
 	char reason[FDP_REASON_MAX];
 	int64_t *delivery_ns; /* begin to FDP_NODE_FRAME, all nodes and frames */
 	size_t delivery_count, delivery_room;
+	/* From the first node that shows a frame to the last, by true time; of frames that all showed. */
+	uint64_t shown_frame;
+	size_t shown;
+	int64_t shown_first_ns, shown_last_ns;
+	int64_t *spread_ns;
+	size_t spread_count, spread_room;
+	uint64_t scheduled; /* frames with a time */
 	/* What the daemon does with the light: before it draws, and when that is done. */
 	size_t share_bytes; /* 0: nothing is shared */
 	void (*begin_light)(struct sim_node *n, uint64_t frame);
@@ -92,6 +107,9 @@ void sim_inject(struct sim *s, int to, const uint8_t *bytes, size_t len, int64_t
 void sim_finish(struct sim *s);
 struct fdp_peer_status sim_peer(const struct sim *s, int node);
 int64_t sim_delivery_quantile(struct sim *s, double q);
+int64_t sim_spread_quantile(struct sim *s, double q);
+/* A node's clock now. */
+int64_t sim_node_time(const struct sim_node *n);
 
 /* Of a random test, said so that it can be repeated. */
 uint64_t sim_seed_of(const char *name);
