@@ -84,6 +84,24 @@ struct layout_rates {
 	int64_t display_latency_ns;  /* from SWAP to light on the wall, for the photon time */
 };
 
+/* When a node shows a frame that all have drawn. */
+enum layout_swap_mode {
+	LAYOUT_SWAP_AUTO,      /* by the driver's barrier where all is there for it, else at a time, else when told */
+	LAYOUT_SWAP_MESSAGE,   /* when the master's word arrives */
+	LAYOUT_SWAP_SCHEDULED, /* at a time that the master gives */
+	LAYOUT_SWAP_HARDWARE,  /* by NV_swap_group and its barrier; refused where there is none */
+};
+
+/* What a wall shows whose node has lost its master, or was left out. */
+enum layout_orphan { LAYOUT_ORPHAN_HOLD, LAYOUT_ORPHAN_BLACK, LAYOUT_ORPHAN_TEST };
+
+struct layout_swap {
+	enum layout_swap_mode mode;
+	float lead_most;      /* of a frame's time: how far ahead the master may set a swap */
+	int64_t busy_poll_ns; /* before a swap's time in which a node looks at the clock and sleeps no more */
+	enum layout_orphan orphan;
+};
+
 enum layout_tracker_kind { LAYOUT_TRACKER_SIM, LAYOUT_TRACKER_REPLAY };
 
 /* The simulated visitor, see tracking/sim.h for what each does. */
@@ -118,6 +136,7 @@ struct layout {
 	size_t node_count;
 	struct layout_network network;
 	struct layout_rates rates;
+	struct layout_swap swap;
 	struct layout_tracker *trackers;
 	size_t tracker_count;
 	struct gr_pose start_head; /* T_room_head before a tracker speaks */
@@ -152,7 +171,7 @@ int layout_write(FILE *file, const struct layout *layout);
  * file, up to `room` of them (items may be NULL), and the BLAKE2b-256 of the
  * canonical form of all: walls, nodes (name, wall, part, address, port, eyes), network, rates,
  * start, room, eye separation. Not of paths, comments, the key file, the
- * trackers and the control socket (the master's own), nor of target, display,
+ * trackers, the control socket and how far ahead a swap is set (the master's own), nor of target, display,
  * monitor and gpu (one node's own). layout_load has stored it in hash. Returns the
  * number of parts, at most LAYOUT_ITEMS_MAX.
  */

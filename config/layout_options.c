@@ -2,6 +2,7 @@
 
 #define RAD_PER_DEG 0.017453292519943295
 #define NS_PER_MS 1e6
+#define NS_PER_US 1e3
 
 static const char *const eyes_choices[] = { "mono", "quad-buffer", "side-by-side", "top-bottom",
 					    "eye-per-node", NULL };
@@ -10,6 +11,8 @@ static const char *const node_eyes_choices[] = { "mono", "quad-buffer", "side-by
 static const char *const eye_choices[] = { "left", "right", NULL };
 static const char *const target_choices[] = { "headless", "window", "fullscreen", NULL };
 static const char *const cast_choices[] = { "unicast", "multicast", "broadcast", NULL };
+static const char *const swap_choices[] = { "auto", "message", "scheduled", "hardware", NULL };
+static const char *const orphan_choices[] = { "hold", "black", "test", NULL };
 static const char *const tracker_choices[] = { "sim", "replay", NULL };
 
 #define AT(type, member) .offset = offsetof(struct type, member)
@@ -124,6 +127,22 @@ static const struct option rates_options[] = {
 	{ .key = NULL },
 };
 
+static const struct option swap_options[] = {
+	{ .key = "mode", .type = OPTION_CHOICE, .choices = swap_choices, .standard = "auto",
+	  AT(layout_file_swap, swap.mode),
+	  .help = "when a node shows what all have drawn: when told, at a time that the master gives, or by the driver's swap barrier" },
+	{ .key = "lead_most", .type = OPTION_FLOAT, .min = 0.01, .max = 0.5, .standard = "0.25",
+	  .unit = "frames", AT(layout_file_swap, swap.lead_most),
+	  .help = "how far ahead of its word the master may set a swap; it takes what the ways need" },
+	{ .key = "busy_poll_us", .type = OPTION_TIME, .min = 0, .max = 10000, .standard = "200",
+	  .scale = NS_PER_US, .unit = "us", AT(layout_file_swap, swap.busy_poll_ns),
+	  .help = "before a swap's time in which a node does not sleep but looks at the clock" },
+	{ .key = "without_master", .type = OPTION_CHOICE, .choices = orphan_choices,
+	  .standard = "hold", AT(layout_file_swap, swap.orphan),
+	  .help = "what a wall shows when its node has lost the master or was left out: the last picture, black, or a test pattern" },
+	{ .key = NULL },
+};
+
 #define START(key_, unit_, limit, standard_, scale_, member, help_)                         \
 	{ .key = key_, .type = OPTION_FLOAT, .min = -(limit), .max = limit, .unit = unit_,  \
 	  .standard = standard_, .scale = scale_, AT(layout_file_start, member), .help = help_ }
@@ -221,6 +240,8 @@ const struct option layout_options[] = {
 	  .group = network_options, .help = "how the machines talk" },
 	{ .key = "rates", .type = OPTION_GROUP, AT(layout_file, rates), .group = rates_options,
 	  .help = "frame rate, barrier, latency" },
+	{ .key = "swap", .type = OPTION_GROUP, AT(layout_file, swap), .group = swap_options,
+	  .help = "when the walls change their picture" },
 	{ .key = "start", .type = OPTION_GROUP, AT(layout_file, start), .group = start_options,
 	  .help = "where head and wand are before a tracker speaks" },
 	{ .key = "room", .type = OPTION_GROUP, AT(layout_file, room), .group = room_options,

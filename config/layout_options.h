@@ -44,6 +44,11 @@ struct layout_file_rates {
 	struct layout_rates rates;
 };
 
+struct layout_file_swap {
+	const config_setting_t *at;
+	struct layout_swap swap;
+};
+
 struct layout_file_start {
 	const config_setting_t *at;
 	vec3 head, wand;
@@ -75,6 +80,7 @@ struct layout_file {
 	size_t wall_count;
 	struct layout_file_network network;
 	struct layout_file_rates rates;
+	struct layout_file_swap swap;
 	struct layout_file_start start;
 	struct layout_file_room room;
 	struct layout_file_tracker *trackers;

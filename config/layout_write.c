@@ -57,6 +57,7 @@ int layout_write(FILE *file, const struct layout *layout)
 		fill_wall(layout, i, &walls[i], nodes + used);
 	form.network.network = layout->network;
 	form.rates.rates = layout->rates;
+	form.swap.swap = layout->swap;
 	glm_vec3_copy((float *)layout->start_head.p, form.start.head);
 	glm_vec3_copy((float *)layout->start_wand.p, form.start.wand);
 	glm_vec3_copy((float *)layout->start_head_angles, form.start.head_angles);

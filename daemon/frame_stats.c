@@ -33,7 +33,7 @@ void frame_stats_applied(struct frame_stats *stats, unsigned node, uint64_t fram
 		histogram_add(&stats->applied, (now_ns - open->begin_ns) / GR_NS_PER_US);
 }
 
-void frame_stats_swap_sent(struct frame_stats *stats, uint64_t frame, int64_t now_ns)
+void frame_stats_swap_sent(struct frame_stats *stats, uint64_t frame, bool scheduled, int64_t now_ns)
 {
 	struct frame_open *open = find(stats, frame);
 	int64_t took;
@@ -41,6 +41,7 @@ void frame_stats_swap_sent(struct frame_stats *stats, uint64_t frame, int64_t no
 	if (!open)
 		return;
 	open->swap_sent_ns = now_ns;
+	open->scheduled = scheduled;
 	took = now_ns - open->begin_ns;
 	histogram_add(&stats->swap_sent, took / GR_NS_PER_US);
 	stats->smoothed_swap_ns = stats->smoothed_swap_ns == 0 ?
@@ -51,23 +52,28 @@ static void close_if_whole(struct frame_stats *stats, struct frame_open *open)
 {
 	if (open->frame == 0 || (open->arrived & open->expected) != open->expected)
 		return;
-	if (open->arrived & (open->arrived - 1)) /* two or more: there is a spread */
-		histogram_add(&stats->skew, (open->last_swap_ns - open->first_swap_ns) / GR_NS_PER_US);
+	if (open->arrived & (open->arrived - 1) && !open->unknown) { /* two or more: there is a spread */
+		const int64_t us = (open->last_swap_ns - open->first_swap_ns) / GR_NS_PER_US;
+
+		histogram_add(&stats->skew, us);
+		histogram_add(open->scheduled ? &stats->skew_scheduled : &stats->skew_told, us);
+	}
 	stats->complete++;
 	open->frame = 0;
 }
 
 void frame_stats_swapped(struct frame_stats *stats, unsigned node, uint64_t frame,
-			 int64_t swap_local_ns, int64_t now_ns)
+			 int64_t swap_ns, int64_t now_ns)
 {
 	struct frame_open *open = find(stats, frame);
 
 	if (!open || node >= FRAME_STATS_NODES || open->arrived >> node & 1)
 		return;
-	if (open->arrived == 0 || swap_local_ns < open->first_swap_ns)
-		open->first_swap_ns = swap_local_ns;
-	if (open->arrived == 0 || swap_local_ns > open->last_swap_ns)
-		open->last_swap_ns = swap_local_ns;
+	if (open->arrived == 0 || swap_ns < open->first_swap_ns)
+		open->first_swap_ns = swap_ns;
+	if (open->arrived == 0 || swap_ns > open->last_swap_ns)
+		open->last_swap_ns = swap_ns;
+	open->unknown |= swap_ns == 0;
 	open->arrived |= UINT64_C(1) << node;
 	if ((open->arrived & open->expected) == open->expected)
 		histogram_add(&stats->last_swapped, (now_ns - open->begin_ns) / GR_NS_PER_US);

@@ -3,9 +3,10 @@
  * and to the last node's report that it swapped, and how far apart the nodes
  * swapped. Pure, fixed size.
  *
- * Skew is the spread of the nodes' own CLOCK_MONOTONIC at the swap. Processes
- * of one machine share that clock, so on loopback the figure is exact; across
- * machines it holds the clocks' offset and is not meaningful.
+ * Skew is the spread of the times at which the nodes swapped, by the master's
+ * clock: as good as the estimates of the nodes' clocks (protocol/clock_offset.h).
+ * A frame of which one node's time is not known has none. It is counted apart
+ * for frames that were shown when told and for those shown at a set time.
  */
 #ifndef GROTTO_DAEMON_FRAME_STATS_H
 #define GROTTO_DAEMON_FRAME_STATS_H
@@ -23,7 +24,9 @@ struct frame_open {
 	int64_t begin_ns;
 	int64_t swap_sent_ns; /* 0: not yet */
 	uint64_t expected, applied, arrived; /* bit per node */
-	int64_t first_swap_ns, last_swap_ns; /* nodes' clocks */
+	int64_t first_swap_ns, last_swap_ns; /* the master's clock */
+	bool unknown;   /* a node's time is not known */
+	bool scheduled; /* shown at a time that was set */
 };
 
 struct frame_stats {
@@ -34,6 +37,7 @@ struct frame_stats {
 	 * node's report of the swap is here. From SWAP: the same report. Skew.
 	 */
 	struct histogram applied, swap_sent, last_swapped, swap_to_last, skew;
+	struct histogram skew_told, skew_scheduled; /* of these */
 	int64_t smoothed_swap_ns; /* begin to SWAP, running mean over about 8 frames; 0 before the first */
 	struct frame_open open[FRAME_STATS_OPEN];
 };
@@ -42,10 +46,10 @@ void frame_stats_begin(struct frame_stats *stats, uint64_t frame, uint64_t expec
 		       int64_t now_ns);
 /* Node said that it holds the state of `frame`. */
 void frame_stats_applied(struct frame_stats *stats, unsigned node, uint64_t frame, int64_t now_ns);
-void frame_stats_swap_sent(struct frame_stats *stats, uint64_t frame, int64_t now_ns);
-/* Node swapped `frame` at swap_local_ns of its clock; now_ns is the report's arrival. */
-void frame_stats_swapped(struct frame_stats *stats, unsigned node, uint64_t frame,
-			 int64_t swap_local_ns, int64_t now_ns);
+void frame_stats_swap_sent(struct frame_stats *stats, uint64_t frame, bool scheduled, int64_t now_ns);
+/* Node swapped `frame` at swap_ns of the master's clock, 0: not known; now_ns is the report's arrival. */
+void frame_stats_swapped(struct frame_stats *stats, unsigned node, uint64_t frame, int64_t swap_ns,
+			 int64_t now_ns);
 /* A node that will not report any more. */
 void frame_stats_gone(struct frame_stats *stats, unsigned node);
 /* All reports of `frame` are in (or it was never begun). */

@@ -17,6 +17,7 @@ daemon_libgdaemon_a_SOURCES = \
 	daemon/privileges.c daemon/privileges.h \
 	daemon/send_queue.c daemon/send_queue.h \
 	daemon/socket.c daemon/socket.h \
+	daemon/swap_wait.c daemon/swap_wait.h \
 	daemon/trackers.c daemon/trackers.h
 daemon_libgdaemon_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(LIBCONFIG_CFLAGS) $(SYSTEMD_CFLAGS)
 

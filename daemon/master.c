@@ -119,8 +119,8 @@ static void on_event(void *ctx, const struct fdp_master_event *event)
 	case FDP_MASTER_MISMATCH: node_mismatch(m, event, now_ns); break;
 	case FDP_MASTER_SWAP:
 		m->swap_ns = now_ns;
-		recorder_swap(m->recorder, now_ns, event->frame, 0);
-		frame_stats_swap_sent(&m->stats, event->frame, now_ns);
+		recorder_swap(m->recorder, now_ns, event->frame, event->swap_ns);
+		frame_stats_swap_sent(&m->stats, event->frame, event->swap_ns != 0, now_ns);
 		notify_feed(&m->notify, now_ns);
 		break;
 	}
@@ -306,7 +306,7 @@ static void note_dropped(struct master *m, int result, const uint8_t *bytes, siz
 }
 
 static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
-			const struct net_address *from)
+			const struct net_address *from, int64_t arrived_ns)
 {
 	struct master *m = ctx;
 	int64_t now_ns = gr_clock_now(&gr_clock_monotonic);
@@ -316,6 +316,7 @@ static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 
 	m->from = from;
 	m->heard_ns = now_ns;
+	fdp_master_arrived(m->fdp, arrived_ns);
 	node = fdp_master_receive(m->fdp, bytes, len, now_ns, &fresh);
 	m->from = NULL;
 	if (node < 0) {
@@ -329,7 +330,7 @@ static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	frame_stats_applied(&m->stats, (unsigned)node, peer.acked, now_ns);
 	if (peer.swapped_frame != 0)
 		frame_stats_swapped(&m->stats, (unsigned)node, peer.swapped_frame,
-				    peer.swap_local_ns, now_ns);
+				    peer.swap_ns, now_ns);
 }
 
 static void receive(struct master *m)
@@ -401,6 +402,18 @@ static void on_second(void *ctx, int64_t now_ns)
 	advance(m);
 }
 
+/* By the driver's barrier a node's word is as good as a time: it waits for the others itself. */
+static enum fdp_swap swap_of(enum layout_swap_mode mode)
+{
+	switch (mode) {
+	case LAYOUT_SWAP_AUTO: return FDP_SWAP_AUTO;
+	case LAYOUT_SWAP_SCHEDULED: return FDP_SWAP_SCHEDULED;
+	case LAYOUT_SWAP_MESSAGE:
+	case LAYOUT_SWAP_HARDWARE: break;
+	}
+	return FDP_SWAP_MESSAGE;
+}
+
 static int create_protocol(struct master *m)
 {
 	const struct layout *layout = m->params.layout;
@@ -413,6 +426,8 @@ static int create_protocol(struct master *m)
 		.deadline_ns = layout->rates.barrier_deadline_ns,
 		.evict_frames = (unsigned)layout->rates.evict_frames,
 		.multicast = layout->network.cast != LAYOUT_UNICAST,
+		.swap = swap_of(layout->swap.mode),
+		.swap_lead_most_ns = llrint((double)layout->swap.lead_most * (double)m->period_ns),
 		.share_bytes = m->params.scene->gi.share == SCENE_SHARE_CLUSTER ? FDP_SHARE_MAX : 0,
 	};
 	struct fdp_master_ops ops = {

@@ -41,6 +41,26 @@ static void write_light(struct json *json, const struct scene_file *file,
 	json_f64(json, "light_error", peer->plan_error * 0.0001);
 }
 
+/* Where the node's clock stands beside ours, and how its SWAPs reach it. */
+static void write_clock(struct json *json, const struct master *m, size_t i,
+			const struct fdp_peer_status *peer, int64_t now_ns)
+{
+	struct fdp_clock_estimate clock;
+
+	fdp_master_clock(m->fdp, i, now_ns, &clock);
+	json_open(json, "clock", '{');
+	json_bool(json, "known", clock.known);
+	if (clock.known) {
+		json_f64(json, "offset_us", (double)clock.offset_ns * 1e-3);
+		json_f64(json, "error_us", (double)clock.error_ns * 1e-3);
+		json_f64(json, "trip_us", (double)clock.trip_ns * 1e-3);
+		json_f64(json, "skew_ppm", clock.skew_ppm);
+	}
+	json_close(json, '}');
+	json_f64(json, "swap_path_us", (double)peer->path_ns * 1e-3);
+	json_u64(json, "swaps_late", peer->swaps_late);
+}
+
 static void write_node(struct json *json, const struct master *m, size_t i, int64_t now_ns)
 {
 	const struct layout_node *node = &m->params.layout->nodes[i];
@@ -59,6 +79,7 @@ static void write_node(struct json *json, const struct master *m, size_t i, int6
 	json_u64(json, "swapped_frame", peer.swapped_frame);
 	json_f64(json, "ready_after_ms", (double)peer.ready_after_ns * 1e-6);
 	json_f64(json, "render_ms", (double)peer.render_us * 1e-3);
+	write_clock(json, m, i, &peer, now_ns);
 	json_u64(json, "slices", peer.slices);
 	json_u64(json, "slices_late", peer.slices_late);
 	json_u64(json, "slice_bytes", peer.slice_bytes);
@@ -125,6 +146,8 @@ static void write_frames(struct json *json, const struct master *m)
 	json_u64(json, "evicted", m->evicted);
 	json_u64(json, "refused", m->refused);
 	write_histogram(json, "skew_us", &m->stats.skew);
+	write_histogram(json, "skew_told_us", &m->stats.skew_told);
+	write_histogram(json, "skew_scheduled_us", &m->stats.skew_scheduled);
 	write_histogram(json, "commit_to_applied_us", &m->stats.applied);
 	write_histogram(json, "commit_to_swap_sent_us", &m->stats.swap_sent);
 	write_histogram(json, "commit_to_last_swap_us", &m->stats.last_swapped);

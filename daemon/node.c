@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/result.h"
 #include "daemon/node_frame.h"
+#include "daemon/swap_wait.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -75,9 +76,19 @@ static void swap(struct node *n, uint64_t frame)
 		window_closed(n);
 	n->swap_ns = gr_clock_now(&gr_clock_monotonic);
 	n->swapped = n->report = frame;
-	n->ready = 0;
+	n->ready = n->due = 0;
 	n->counts.swapped++;
 	note_cpu(&n->counts);
+}
+
+static void told_to_swap(struct node *n, uint64_t frame, int64_t at_ns)
+{
+	if (n->ready != 0 && frame == n->ready && at_ns != 0) {
+		n->due = frame;
+		n->due_ns = at_ns;
+	} else {
+		swap(n, frame);
+	}
 }
 
 static void refused(struct node *n, const char *reason, int64_t now_ns)
@@ -106,7 +117,7 @@ static void on_event(void *ctx, const struct fdp_node_event *event)
 		gr_notice("joined the master");
 		break;
 	case FDP_NODE_FRAME: apply_frame(n, event->frame, now_ns); break;
-	case FDP_NODE_SWAP: swap(n, event->frame); break;
+	case FDP_NODE_SWAP: told_to_swap(n, event->frame, event->at_ns); break;
 	case FDP_NODE_REFUSED: refused(n, event->reason, now_ns); break;
 	case FDP_NODE_LOST:
 		n->counts.lost++;
@@ -130,12 +141,15 @@ static void on_event(void *ctx, const struct fdp_node_event *event)
 }
 
 static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
-			const struct net_address *from)
+			const struct net_address *from, int64_t arrived_ns)
 {
 	struct node *n = ctx;
 	int64_t now_ns = gr_clock_now(&gr_clock_monotonic);
-	int r = fdp_node_receive(n->fdp, bytes, len, now_ns);
 	struct dropped_datagram dropped = { .from = from, .bytes = bytes, .len = len };
+	int r;
+
+	fdp_node_arrived(n->fdp, arrived_ns);
+	r = fdp_node_receive(n->fdp, bytes, len, now_ns);
 
 	/* A master's words before it has taken us are none of ours, and nothing bad. */
 	if (r >= 0 || (r == GR_ERR_MISMATCH && fdp_node_status(n->fdp) != FDP_NODE_LIVE))
@@ -282,8 +296,21 @@ static void finish_drawing(struct node *n)
 	serve_protocol(n);
 }
 
+static void swap_in_time(struct node *n)
+{
+	const int64_t at_ns = n->due_ns;
+
+	swap_wait(at_ns, n->params.layout->swap.busy_poll_ns);
+	swap(n, n->due);
+	n->counts.scheduled++;
+	histogram_add(&n->swap_off, (n->swap_ns - at_ns) / GR_NS_PER_US);
+	serve_protocol(n);
+}
+
 static void work(struct node *n)
 {
+	if (n->due != 0)
+		swap_in_time(n);
 	/* A picture that is to be saved must be read before the next is drawn over it. */
 	if (n->drawing == 0 && n->drawn != 0 && n->drawn == n->swapped && picture_due(n, n->drawn))
 		save_picture(n, n->drawn);

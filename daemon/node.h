@@ -7,6 +7,7 @@
  * applied) -> drawing (submitted) -> ready (the GPU has finished, our slice of
  * a shared light and READY are sent) -> swapped. A newer frame replaces a wanted one; a frame that is
  * being drawn is finished first, and is not reported when a newer one waits.
+ * A swap may have a time: it is waited for, which is the frame's own wait.
  *
  * Without a master the last picture stays and the node asks to join, for ever.
  * No allocation after node_create but for saved pictures.
@@ -16,6 +17,7 @@
 
 #include "base/log.h"
 #include "daemon/dropped.h"
+#include "daemon/histogram.h"
 #include "daemon/loop.h"
 #include "daemon/node_share.h"
 #include "daemon/notify.h"
@@ -41,6 +43,7 @@ struct node_params {
 struct node_counts {
 	uint64_t applied, drawn, swapped;
 	uint64_t dropped; /* applied, but a newer frame came before it was ready */
+	uint64_t scheduled; /* swapped at a time that was set; the others when told */
 	uint64_t invalid; /* applied, but not drawable: values that make no sense together */
 	uint64_t mismatches, joined, lost, refused;
 	int64_t first_cpu_ns, last_cpu_ns; /* this process' time on processors at the first and the last swap */
@@ -64,6 +67,9 @@ struct node {
 	uint64_t wanted, drawing, drawn, ready, swapped, saved;
 	bool picture;             /* the drawn frame has one (its eyes see the wall) */
 	int64_t wanted_ns, drawing_ns; /* when the state of that frame was applied */
+	uint64_t due;             /* frame that is to be swapped at due_ns; 0: none */
+	int64_t due_ns;
+	struct histogram swap_off; /* us from the time that was set to the picture's being shown */
 	int64_t swap_ns;          /* of a swap that is not yet reported; 0: none */
 	uint64_t report;          /* frame of that swap */
 	bool master_gone;         /* left, refused, or lost: nothing will come */

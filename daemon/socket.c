@@ -2,6 +2,7 @@
 
 #include "daemon/socket.h"
 
+#include "base/clock.h"
 #include "base/log.h"
 #include "base/result.h"
 
@@ -12,11 +13,20 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/uio.h>
+#include <time.h>
 #include <unistd.h>
 
 #define NET_BATCH 16
 #define NET_GROUP LAYOUT_MAX_NODES /* the way to the group */
 #define NET_BUFFER (4 << 20)
+
+#define NET_STAMP_MOST_NS GR_NS_PER_S /* a datagram may have waited so long for us */
+
+/* Room for the kernel's time stamp, aligned as the kernel wants it. */
+union net_control {
+	struct cmsghdr head;
+	char bytes[CMSG_SPACE(sizeof(struct timespec))];
+};
 
 struct net {
 	int fd;       /* bound to our address */
@@ -32,6 +42,7 @@ struct net {
 	struct mmsghdr in[NET_BATCH];
 	struct iovec in_iov[NET_BATCH];
 	struct net_address in_from[NET_BATCH];
+	union net_control in_control[NET_BATCH];
 	uint8_t *in_bytes; /* NET_BATCH * datagram_max */
 };
 
@@ -122,6 +133,7 @@ static int open_bound(const struct net_address *address, bool shared)
 	}
 	set_buffers(fd);
 	set_option(fd, SOL_SOCKET, SO_PRIORITY, 6);
+	set_option(fd, SOL_SOCKET, SO_TIMESTAMPNS, 1);
 	/* A datagram over the path's MTU is refused here, not cut up unseen. */
 	if (address->sa.ss_family == AF_INET6)
 		set_option(fd, IPPROTO_IPV6, IPV6_MTU_DISCOVER, IPV6_PMTUDISC_DO);
@@ -224,7 +236,8 @@ static void prepare_messages(struct net *net)
 						 net->datagram_max };
 		net->in[i].msg_hdr = (struct msghdr){ .msg_name = &net->in_from[i].sa,
 						      .msg_iov = &net->in_iov[i],
-						      .msg_iovlen = 1 };
+						      .msg_iovlen = 1,
+						      .msg_control = &net->in_control[i] };
 	}
 }
 
@@ -385,24 +398,69 @@ void net_learn(struct net *net, int node, const struct net_address *from)
 		net->peers[node] = *from;
 }
 
+struct net_now {
+	int64_t monotonic_ns, real_ns;
+};
+
+static int64_t ns_of(const struct timespec *ts)
+{
+	return (int64_t)ts->tv_sec * GR_NS_PER_S + ts->tv_nsec;
+}
+
+static struct net_now net_now(void)
+{
+	struct net_now now = { gr_clock_now(&gr_clock_monotonic), 0 };
+	struct timespec ts;
+
+	if (clock_gettime(CLOCK_REALTIME, &ts) == 0)
+		now.real_ns = ns_of(&ts);
+	return now;
+}
+
+/*
+ * The kernel stamps with CLOCK_REALTIME, which may be set at any time: only how
+ * long ago it was is taken from it, and only if that makes sense.
+ */
+static int64_t arrival(struct msghdr *message, const struct net_now *now)
+{
+	for (struct cmsghdr *c = CMSG_FIRSTHDR(message); c; c = CMSG_NXTHDR(message, c)) {
+		struct timespec stamp;
+		int64_t age_ns;
+
+		if (c->cmsg_level != SOL_SOCKET || c->cmsg_type != SCM_TIMESTAMPNS ||
+		    c->cmsg_len < CMSG_LEN(sizeof stamp))
+			continue;
+		memcpy(&stamp, CMSG_DATA(c), sizeof stamp);
+		age_ns = now->real_ns - ns_of(&stamp);
+		if (age_ns >= 0 && age_ns <= NET_STAMP_MOST_NS)
+			return now->monotonic_ns - age_ns;
+	}
+	return now->monotonic_ns;
+}
+
 int net_receive(struct net *net, int fd, int most, net_receive_fn fn, void *ctx)
 {
 	int taken = 0;
 
 	while (taken < most) {
+		struct net_now now;
 		int room = most - taken < NET_BATCH ? most - taken : NET_BATCH, n;
 
-		for (int i = 0; i < room; i++)
+		for (int i = 0; i < room; i++) {
 			net->in[i].msg_hdr.msg_namelen = sizeof net->in_from[i].sa;
+			net->in[i].msg_hdr.msg_controllen = sizeof net->in_control[i];
+		}
 		n = recvmmsg(fd, net->in, (unsigned)room, MSG_DONTWAIT, NULL);
 		if (n <= 0)
 			break; /* nothing left, or an error that the next event reports again */
+		now = net_now();
 		for (int i = 0; i < n; i++) {
 			net->in_from[i].len = net->in[i].msg_hdr.msg_namelen;
 			if (net->in[i].msg_hdr.msg_flags & MSG_TRUNC)
 				net->oversized++;
 			else
-				fn(ctx, net->in_iov[i].iov_base, net->in[i].msg_len, &net->in_from[i]);
+				fn(ctx, net->in_iov[i].iov_base, net->in[i].msg_len, &net->in_from[i],
+				   arrival(&net->in[i].msg_hdr, &now));
 		}
 		taken += n;
 		if (n < room)

@@ -58,8 +58,9 @@ int net_peer(const struct net *net, const struct net_address *from);
 /* Master: node `node` was heard from there, and it was no recording. */
 void net_learn(struct net *net, int node, const struct net_address *from);
 
+/* arrived_ns: when the kernel had it, CLOCK_MONOTONIC; the present where it does not say. */
 typedef void (*net_receive_fn)(void *ctx, const uint8_t *bytes, size_t len,
-			       const struct net_address *from);
+			       const struct net_address *from, int64_t arrived_ns);
 /* Takes what waits at fd, at most `most` datagrams; returns how many. */
 int net_receive(struct net *net, int fd, int most, net_receive_fn fn, void *ctx);
 

@@ -191,6 +191,7 @@ static struct json_object *summary_json(struct summary *summary)
 {
 	static const char *const members[] = {
 		"frames_complete", "frames_incomplete", "late", "evicted", "state_hash", "skew_us",
+		"skew_told_us", "skew_scheduled_us",
 		"commit_to_applied_us", "commit_to_swap_sent_us", "commit_to_last_swap_us", "share", "wire",
 	};
 	const struct demo *demo = summary->demo;
@@ -318,6 +319,13 @@ static void print_timing(struct json_object *master, const char *what, const cha
 	       (long long)report_count(h, "count"));
 }
 
+/* Of the frames that were swapped in this way, if there are any. */
+static void print_skew(struct json_object *master, const char *what, const char *member)
+{
+	if (report_count(report_member(master, member), "count") > 0)
+		print_timing(master, what, member);
+}
+
 /* What was asked for is only said of a run that did it. */
 static void print_frames(const struct summary *summary)
 {
@@ -338,7 +346,8 @@ static void print_summary(const struct summary *summary)
 {
 	print_nodes(summary);
 	if (summary->master) {
-		print_timing(summary->master, "swap skew", "skew_us");
+		print_skew(summary->master, "swap skew, told", "skew_told_us");
+		print_skew(summary->master, "swap skew, at a time", "skew_scheduled_us");
 		print_timing(summary->master, "commit to last swap", "commit_to_last_swap_us");
 		printf("master sent %lld bytes in %lld datagrams (%lld repairs), heard %lld bytes\n",
 		       (long long)report_count(summary->master, "wire.bytes_out"),

@@ -26,23 +26,36 @@ static void print_histogram(struct json_object *status, const char *what, const 
 	       report_number(h, "p99"), report_number(h, "max"));
 }
 
+/* Of the frames that were swapped in this way, if there are any. */
+static void print_skew(struct json_object *status, const char *what, const char *member)
+{
+	if (report_count(report_member(status, member), "count") > 0)
+		print_histogram(status, what, member);
+}
+
 static void print_nodes(struct json_object *status)
 {
 	struct json_object *nodes = report_member(status, "nodes");
 	size_t count = json_object_is_type(nodes, json_type_array)
 			       ? json_object_array_length(nodes) : 0;
 
-	printf("\n%-14s %-14s %-8s %10s %8s %8s %10s %10s\n", "node", "wall", "state", "swapped",
-	       "missed", "differed", "ready ms", "render ms");
+	printf("\n%-14s %-14s %-8s %10s %8s %8s %10s %10s %9s %8s\n", "node", "wall", "state", "swapped",
+	       "missed", "differed", "ready ms", "render ms", "clock us", "ppm");
 	for (size_t i = 0; i < count; i++) {
 		struct json_object *node = json_object_array_get_idx(nodes, i);
 
-		printf("%-14s %-14s %-8s %10lld %8lld %8lld %10.2f %10.2f\n",
+		printf("%-14s %-14s %-8s %10lld %8lld %8lld %10.2f %10.2f",
 		       report_text(node, "name"), report_text(node, "wall"),
 		       report_text(node, "state"), (long long)report_count(node, "swapped"),
 		       (long long)report_count(node, "missed"),
 		       (long long)report_count(node, "mismatches"),
 		       report_number(node, "ready_after_ms"), report_number(node, "render_ms"));
+		/* How far off it may be, at most; the offset itself says nothing to a person. */
+		if (json_object_get_boolean(report_member(node, "clock.known")))
+			printf(" %9.0f %+8.2f\n", report_number(node, "clock.error_us"),
+			       report_number(node, "clock.skew_ppm"));
+		else
+			printf(" %9s %8s\n", "-", "-");
 	}
 }
 
@@ -132,7 +145,8 @@ static void print_status(struct json_object *status)
 	       (long long)report_count(status, "frame"), report_number(status, "uptime_s"));
 	print_nodes(status);
 	printf("\n");
-	print_histogram(status, "swap skew", "skew_us");
+	print_skew(status, "swap skew, told", "skew_told_us");
+	print_skew(status, "swap skew, at a time", "skew_scheduled_us");
 	print_histogram(status, "commit to last swap", "commit_to_last_swap_us");
 	printf("late %lld, evicted %lld, refused %lld; sent %lld bytes (%lld repairs), heard %lld\n",
 	       (long long)report_count(status, "late"), (long long)report_count(status, "evicted"),

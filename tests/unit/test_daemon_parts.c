@@ -148,7 +148,7 @@ static void frame_stats_measure_swap_and_skew(void **state)
 	frame_stats_applied(&s, 64, 1, 109 * MS);
 	assert_int_equal(s.applied.count, 1);
 	assert_int_equal(s.applied.max_us, 3000);
-	frame_stats_swap_sent(&s, 1, 110 * MS);
+	frame_stats_swap_sent(&s, 1, false, 110 * MS);
 	assert_int_equal(s.smoothed_swap_ns, 10 * MS);
 	frame_stats_swapped(&s, 1, 1, 5000 * MS, 111 * MS);
 	frame_stats_swapped(&s, 1, 1, 9000 * MS, 111 * MS); /* said twice: counts once */
@@ -160,6 +160,8 @@ static void frame_stats_measure_swap_and_skew(void **state)
 	assert_true(frame_stats_settled(&s, 1));
 	assert_int_equal(s.complete, 1);
 	assert_int_equal(s.skew.max_us, 2000);
+	assert_int_equal(s.skew_told.count, 1);
+	assert_int_equal(s.skew_scheduled.count, 0);
 	assert_int_equal(s.last_swapped.max_us, 14000);
 	assert_int_equal(s.swap_sent.max_us, 10000);
 	assert_int_equal(s.swap_to_last.max_us, 4000);
@@ -168,9 +170,22 @@ static void frame_stats_measure_swap_and_skew(void **state)
 	frame_stats_swapped(&s, 1, 2, 5010 * MS, 120 * MS);
 	frame_stats_gone(&s, 2);
 	assert_true(frame_stats_settled(&s, 2));
-	assert_int_equal(s.complete, 2);
+	/* At a set time, and with a node whose clock is not known. */
+	frame_stats_begin(&s, 3, 3, 130 * MS);
+	frame_stats_swap_sent(&s, 3, true, 131 * MS);
+	frame_stats_swapped(&s, 0, 3, 5020 * MS, 132 * MS);
+	frame_stats_swapped(&s, 1, 3, 5021 * MS, 132 * MS);
+	assert_int_equal(s.skew_scheduled.max_us, 1000);
+	frame_stats_begin(&s, 4, 3, 140 * MS);
+	frame_stats_swapped(&s, 0, 4, 5030 * MS, 142 * MS);
+	frame_stats_swapped(&s, 1, 4, 0, 142 * MS);
+	assert_true(frame_stats_settled(&s, 4));
+	assert_int_equal(s.skew.count, s.skew_told.count + s.skew_scheduled.count);
+	assert_int_equal(s.skew_scheduled.count, 1);
+	assert_int_equal(s.skew_told.count, 2);
+	assert_int_equal(s.complete, 4);
 	/* Reports that never come do not stop the count. */
-	for (uint64_t frame = 3; frame < 3 + FRAME_STATS_OPEN + 1; frame++)
+	for (uint64_t frame = 5; frame < 5 + FRAME_STATS_OPEN + 1; frame++)
 		frame_stats_begin(&s, frame, 3, 200 * MS);
 	assert_int_equal(s.incomplete, 1);
 	/* Hostile numbers. */

@@ -1,6 +1,7 @@
 /* Sockets of a room over loopback: unicast, multicast, broadcast; what is refused. */
 #include "tests/unit/unit.h"
 
+#include "base/clock.h"
 #include "base/log.h"
 #include "base/result.h"
 #include "daemon/socket.h"
@@ -54,9 +55,11 @@ struct heard {
 	size_t len;
 	uint8_t bytes[4096];
 	struct net_address from;
+	int64_t arrived_ns;
 };
 
-static void hear(void *ctx, const uint8_t *bytes, size_t len, const struct net_address *from)
+static void hear(void *ctx, const uint8_t *bytes, size_t len, const struct net_address *from,
+		 int64_t arrived_ns)
 {
 	struct heard *h = ctx;
 
@@ -64,6 +67,7 @@ static void hear(void *ctx, const uint8_t *bytes, size_t len, const struct net_a
 	h->len = len;
 	memcpy(h->bytes, bytes, len);
 	h->from = *from;
+	h->arrived_ns = arrived_ns;
 }
 
 static int listen_at(struct net *net, int which, struct heard *h)
@@ -77,6 +81,30 @@ static int listen_at(struct net *net, int which, struct heard *h)
 	if (poll(&wait, 1, 1000) <= 0)
 		return 0;
 	return net_receive(net, fds[which], 1000, hear, h);
+}
+
+/* A datagram that waited has the time at which it came, not that at which it was taken. */
+static void arrival(void **state)
+{
+	struct room room;
+	struct net *master, *node;
+	struct heard h;
+	int64_t before_ns, after_ns;
+
+	(void)state;
+	make_room(&room, "127.0.0.1");
+	assert_int_equal(net_open_master(&master, &room.layout), GR_OK);
+	assert_int_equal(net_open_node(&node, &room.layout, 0), GR_OK);
+	before_ns = gr_clock_now(&gr_clock_monotonic);
+	net_send(node, 0, (const uint8_t *)"x", 1);
+	net_flush(node);
+	after_ns = gr_clock_now(&gr_clock_monotonic);
+	usleep(30000);
+	assert_int_equal(listen_at(master, 0, &h), 1);
+	/* Two clocks are read one after the other: some microseconds. */
+	assert_true(h.arrived_ns >= before_ns - 100000 && h.arrived_ns <= after_ns + 100000);
+	net_close(&master);
+	net_close(&node);
 }
 
 static void unicast_over(const char *address)
@@ -273,7 +301,7 @@ static void addresses_as_text(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(unicast_ipv4),
+		cmocka_unit_test(arrival), cmocka_unit_test(unicast_ipv4),
 		cmocka_unit_test(unicast_ipv6),
 		cmocka_unit_test(multicast_reaches_all),
 		cmocka_unit_test(broadcast_reaches_all),
