@@ -21,6 +21,7 @@
 #define NET_BUFFER (4 << 20)
 
 #define NET_STAMP_MOST_NS GR_NS_PER_S /* a datagram may have waited so long for us */
+#define NET_READ_MOST_NS 5000         /* between the readings of two clocks */
 
 /* Room for the kernel's time stamp, aligned as the kernel wants it. */
 union net_control {
@@ -407,13 +408,24 @@ static int64_t ns_of(const struct timespec *ts)
 	return (int64_t)ts->tv_sec * GR_NS_PER_S + ts->tv_nsec;
 }
 
+/* Both clocks at one time: again, if something came between the readings. */
 static struct net_now net_now(void)
 {
-	struct net_now now = { gr_clock_now(&gr_clock_monotonic), 0 };
-	struct timespec ts;
+	struct net_now now = { 0, 0 };
 
-	if (clock_gettime(CLOCK_REALTIME, &ts) == 0)
+	for (int i = 0; i < 4; i++) {
+		const int64_t before_ns = gr_clock_now(&gr_clock_monotonic);
+		struct timespec ts;
+
+		if (clock_gettime(CLOCK_REALTIME, &ts) < 0)
+			break;
+		now.monotonic_ns = gr_clock_now(&gr_clock_monotonic);
+		if (now.monotonic_ns - before_ns > NET_READ_MOST_NS)
+			continue;
 		now.real_ns = ns_of(&ts);
+		return now;
+	}
+	now.monotonic_ns = gr_clock_now(&gr_clock_monotonic); /* and no stamp makes sense with 0 */
 	return now;
 }
 
