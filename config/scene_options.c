@@ -118,7 +118,7 @@ static const struct option surfels_options[] = {
 	{ .key = "gathers", .type = OPTION_INT, .min = 1, .max = 16, .standard = "1",
 	  AT(scene_form_surfels, gi.gathers),
 	  .help = "bounces that are added a frame while the light changes" },
-	{ .key = "taps", .type = OPTION_INT, .min = 16, .max = 64, .standard = "16",
+	{ .key = "taps", .type = OPTION_INT, .min = 16, .max = 64, .standard = "64",
 	  AT(scene_form_surfels, gi.taps),
 	  .help = "points of a surfel at which the lamps' light is looked up" },
 	{ .key = "probes", .type = OPTION_INT, .min = 1, .max = 64, .unit = "cells",

@@ -11,19 +11,19 @@
 #define SURFELS_MOST 100000.0
 #define SPACING_MOST 1000.0
 #define PROBES_RAYS_MOST 2.4e7
+#define PLAN_TAPS 64 /* with fewer the edge of a moving shadow flickers (docs/results.md) */
 
 const struct gi_costs gi_costs_usual = {
 	.lattice_frame = 2e6,
 	.lattice_cell_step = 180,
-	.surfel_frame = 1e6,
-	.surfel_tap = 130,
-	.surfel_link = 10,
+	.surfel_frame = 5e5,
+	.surfel_tap = 25,
+	.surfel_link = 1.5,
 };
 
 static const double surfel_counts[] = { 250, 500, 1000, 2000, 4000, 8000, 16000, 32000, 64000 };
 static const int link_counts[] = { 64, 128, 256, 512, 1024 };
 static const int gather_counts[] = { 1, 2, 4 };
-static const int tap_counts[] = { 16, 32, 64 };
 static const int probe_counts[] = { 4, 8, 12, 16, 24, 32 };
 static const int lattices[] = { 8, 12, 16, 20, 24, 32, 48, 64 };
 static const int step_counts[] = { 2, 4, 8, 16 };
@@ -189,9 +189,9 @@ static void consider_surfels(struct search *s, struct scene_gi gi, bool probes)
 			if (gi_plan_surfels(s->facts, &gi) > SURFELS_MOST ||
 			    gi_plan_surfels(s->facts, &gi) * gi.links > RAYS_MOST)
 				continue;
-			for (size_t k = 0; k < COUNT(gather_counts) * COUNT(tap_counts); k++) {
-				gi.gathers = gather_counts[k % COUNT(gather_counts)];
-				gi.taps = tap_counts[k / COUNT(gather_counts)];
+			for (size_t k = 0; k < COUNT(gather_counts); k++) {
+				gi.gathers = gather_counts[k];
+				gi.taps = PLAN_TAPS;
 				if (probes)
 					consider_probes(s, gi);
 				else

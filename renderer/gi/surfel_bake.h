@@ -51,7 +51,7 @@ struct surfel_bake_params {
 	void *ctx;
 };
 #define SURFEL_BAKE_PARAMS \
-	{ .links = 256, .taps = 16, .probes = 8, .seed = 1 }
+	{ .links = 256, .taps = 64, .probes = 8, .seed = 1 }
 /* From a scene file's settings. */
 void surfel_bake_params_of(const struct scene_file *file, struct surfel_bake_params *out);
 

@@ -49,14 +49,16 @@ void surfels_dispatch(unsigned program, struct surfels_run run)
 static void dispatch_parts(unsigned program, struct surfels_run run, const struct surfels_buffer *entries,
 			   size_t bytes_each, uint32_t part, size_t count)
 {
+	glBindTextureUnit(SURFELS_UNIT_PARTS, entries->texture);
 	for (uint32_t base = run.first / part * part; base < run.last; base += part) {
 		struct surfels_run now = { run.first > base ? run.first : base,
 					   run.last - base > part ? base + part : run.last };
 		size_t padded = (count + SURFELS_GROUP - 1) / SURFELS_GROUP * SURFELS_GROUP;
 		size_t here = padded - base < part ? padded - base : part;
 
-		glBindBufferRange(GL_SHADER_STORAGE_BUFFER, SURFELS_BINDING_PARTS, entries->buffer,
-				  (GLintptr)(base * bytes_each), (GLsizeiptr)(here * bytes_each));
+		if (part < padded)
+			glTextureBufferRange(entries->texture, GL_RGBA32UI, entries->buffer,
+					     (GLintptr)(base * bytes_each), (GLsizeiptr)(here * bytes_each));
 		glProgramUniform1ui(program, 1, base);
 		surfels_dispatch(program, now);
 	}
@@ -65,17 +67,17 @@ static void dispatch_parts(unsigned program, struct surfels_run run, const struc
 static void bind_passes(struct surfels *s)
 {
 	glBindBufferBase(GL_UNIFORM_BUFFER, SURFELS_BINDING_BLOCK, s->block);
-	bind_storage(SURFELS_BINDING_ALBEDO, &s->albedo);
-	bind_storage(SURFELS_BINDING_EMISSIVE, &s->emissive);
 	bind_storage(SURFELS_BINDING_FOUND, &s->found);
 	bind_storage(SURFELS_BINDING_DIRECT, &s->direct);
-	bind_storage(SURFELS_BINDING_OTHER, &s->other);
+	glBindTextureUnit(SURFELS_UNIT_ALBEDO, s->albedo.texture);
+	glBindTextureUnit(SURFELS_UNIT_EMISSIVE, s->emissive.texture);
 }
 
 void surfels_relight(struct surfels *s, struct surfels_run run, bool lamps)
 {
 	bind_passes(s);
 	bind_storage(SURFELS_BINDING_RADIOSITY, &s->radiosity[s->current]);
+	glBindTextureUnit(SURFELS_UNIT_FOUND, s->found.texture);
 	surfels_barrier();
 	if (lamps && s->light)
 		dispatch_parts(s->light, run, &s->taps, s->taps_each * sizeof(struct surfel_tap),
@@ -93,11 +95,13 @@ void surfels_gather(struct surfels *s, struct surfels_run run)
 	bind_passes(s);
 	glBindTextureUnit(SURFELS_UNIT_RADIOSITY, s->radiosity[s->current].texture);
 	glBindTextureUnit(SURFELS_UNIT_TEXELS, s->texels.texture);
+	glBindTextureUnit(SURFELS_UNIT_DIRECT, s->direct.texture);
+	glBindTextureUnit(SURFELS_UNIT_OTHER, s->other.texture);
 	bind_storage(SURFELS_BINDING_RADIOSITY, &s->radiosity[!s->current]);
 	if (sigma > 0)
 		/* what nothing gets through is a number that stays finite times any distance */
 		glProgramUniform1f(program, 2, sigma < 1 ? log2f(1 - sigma) : -1e6f);
-	dispatch_parts(program, run, &s->links, s->links_each * sizeof(uint32_t), s->links_part,
+	dispatch_parts(program, run, &s->links, surfels_link_texels(s->links_each) * 16, s->links_part,
 		       s->count);
 	surfels_barrier();
 	s->current = !s->current;

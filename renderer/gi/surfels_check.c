@@ -86,7 +86,7 @@ void surfels_check_submit(struct surfels *s, struct surfels_run run)
 				  NULL);
 	glBindTextureUnit(SURFELS_UNIT_RADIOSITY, s->radiosity[s->current].texture);
 	glBindTextureUnit(SURFELS_UNIT_BEFORE, s->radiosity[!s->current].texture);
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SURFELS_BINDING_FOUND, s->found.buffer);
+	glBindTextureUnit(SURFELS_UNIT_PARTS, s->found.texture);
 	glBindBufferRange(GL_SHADER_STORAGE_BUFFER, SURFELS_BINDING_OTHER, s->checks,
 			  slot * SLOT_BYTES, sizeof(struct surfels_check));
 	surfels_barrier();

@@ -15,16 +15,16 @@
 enum surfels_binding {
 	SURFELS_BINDING_BLOCK = 8,  /* uniform */
 	SURFELS_BINDING_WORDS = 8,  /* packed slices */
-	SURFELS_BINDING_PARTS = 9,  /* links or taps: the part that is worked on */
-	SURFELS_BINDING_ALBEDO = 10,
-	SURFELS_BINDING_EMISSIVE = 11,
-	SURFELS_BINDING_FOUND = 12,
+	SURFELS_BINDING_FOUND = 12, /* what passes write */
 	SURFELS_BINDING_DIRECT = 13,
 	SURFELS_BINDING_RADIOSITY = 14,
-	SURFELS_BINDING_OTHER = 15, /* and checks, scales of slices, probes */
+	SURFELS_BINDING_OTHER = 15, /* checks, scales of slices */
 };
 
-/* Texture units. */
+/*
+ * Texture units. What passes only read they read as buffer textures: a GPU does
+ * not mind, and a software renderer reads those several times faster than storage.
+ */
 enum surfels_unit {
 	SURFELS_UNIT_SURFELS = 8, /* shading */
 	SURFELS_UNIT_LIGHT = 9,
@@ -34,6 +34,12 @@ enum surfels_unit {
 	SURFELS_UNIT_RADIOSITY = 8, /* passes */
 	SURFELS_UNIT_TEXELS = 9,
 	SURFELS_UNIT_BEFORE = 9,
+	SURFELS_UNIT_PARTS = 10, /* links or taps: the part that is worked on */
+	SURFELS_UNIT_ALBEDO = 11,
+	SURFELS_UNIT_EMISSIVE = 12,
+	SURFELS_UNIT_FOUND = 13, /* of the light pass; the next two of the gather */
+	SURFELS_UNIT_DIRECT = 13,
+	SURFELS_UNIT_OTHER = 14,
 	SURFELS_UNIT_PROBES = 8, /* shading from probes */
 	SURFELS_UNIT_DISTANCE = 9,
 	SURFELS_UNIT_ALIVE = 10,
@@ -106,7 +112,7 @@ struct surfels {
 	unsigned light, dark_light, gather, gather_medium, smooth, check; /* programs; dark_light: without lamps */
 	unsigned block, checks;
 	struct surfels_buffer texels;	       /* struct surfel */
-	struct surfels_buffer links, taps;     /* in blocks of SURFELS_GROUP surfels */
+	struct surfels_buffer links, taps;     /* in blocks of SURFELS_GROUP surfels; links four a texel */
 	uint32_t links_part, taps_part;	       /* surfels whose links and taps a shader sees at once */
 	struct surfels_buffer albedo, emissive, other; /* RGBA32F as all that follow */
 	struct surfels_buffer direct;	       /* of the lamps, W/m^2 */
@@ -140,6 +146,12 @@ void surfels_upload_finish(struct surfels *s);
 int surfels_storage(struct surfels *s, struct surfels_buffer *out, const char *what,
 		    unsigned format, size_t bytes, const void *data);
 void surfels_storage_finish(struct surfels_buffer *buffer);
+
+/* Texels that hold a surfel's links, four each; what is left over is dark. */
+static inline size_t surfels_link_texels(size_t links_each)
+{
+	return (links_each + 3) / 4;
+}
 
 /* surfels.c: passes over a run. */
 void surfels_relight(struct surfels *s, struct surfels_run run, bool lamps);

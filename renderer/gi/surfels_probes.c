@@ -51,7 +51,7 @@ static int upload_links(struct surfels *s, const struct surfel_probes *from)
 					 number * sizeof *links, links);
 	}
 	if (result == GR_OK)
-		result = surfels_storage(s, &s->probes.basis, "directions of probes", GL_R32UI,
+		result = surfels_storage(s, &s->probes.basis, "directions of probes", GL_R32F,
 					 from->links_each * SURFEL_SH * sizeof *rows, rows);
 	free(links);
 	free(rows);
@@ -188,14 +188,14 @@ void surfels_probes_finish(struct surfels *s)
 void surfels_probes_gather(struct surfels *s)
 {
 	struct surfels_probes *p = &s->probes;
-	const struct surfels_buffer *const buffers[4] = { &p->links, &p->basis, &p->fixed, &p->light };
+	const struct surfels_buffer *const from[3] = { &p->links, &p->basis, &p->fixed };
 	float sigma = s->absorption + s->scattering;
 
 	if (!p->program)
 		return;
-	for (unsigned i = 0; i < 4; i++)
-		glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SURFELS_BINDING_PARTS + i,
-				 buffers[i]->buffer);
+	for (unsigned i = 0; i < 3; i++)
+		glBindTextureUnit(SURFELS_UNIT_PARTS + i, from[i]->texture);
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SURFELS_BINDING_FOUND, p->light.buffer);
 	glBindBufferBase(GL_UNIFORM_BUFFER, SURFELS_BINDING_BLOCK, p->block);
 	glBindTextureUnit(SURFELS_UNIT_RADIOSITY, s->radiosity[s->current].texture);
 	glBindTextureUnit(SURFELS_UNIT_TEXELS, s->texels.texture);

@@ -114,6 +114,7 @@ static void pack(struct surfels *s, struct surfels_run run, unsigned words, unsi
 {
 	bind_words(s, words);
 	glBindTextureUnit(SURFELS_UNIT_RADIOSITY, s->radiosity[s->current].texture);
+	glBindTextureUnit(SURFELS_UNIT_BEFORE, s->found.texture);
 	glClearNamedBufferSubData(s->share.scales, GL_R32UI, place * 16, 16, GL_RED_INTEGER,
 				  GL_UNSIGNED_INT, NULL);
 	for (int i = PEAK; i <= PACK; i++) {

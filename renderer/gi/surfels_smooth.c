@@ -123,11 +123,9 @@ void surfels_smooth_finish(struct surfels *s)
 
 void surfels_smooth(struct surfels *s)
 {
-	const struct surfels_buffer *const buffers[3] = { &s->around_first, &s->around, &s->shown };
-
-	for (unsigned i = 0; i < 3; i++)
-		glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SURFELS_BINDING_PARTS + i,
-				 buffers[i]->buffer);
+	glBindTextureUnit(SURFELS_UNIT_BEFORE, s->around_first.texture);
+	glBindTextureUnit(SURFELS_UNIT_PARTS, s->around.texture);
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SURFELS_BINDING_FOUND, s->shown.buffer);
 	glBindBufferBase(GL_UNIFORM_BUFFER, SURFELS_BINDING_BLOCK, s->block);
 	glBindTextureUnit(SURFELS_UNIT_RADIOSITY, s->found.texture);
 	surfels_dispatch(s->smooth, (struct surfels_run){ 0, (uint32_t)s->count });

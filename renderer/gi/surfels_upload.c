@@ -18,11 +18,10 @@ int surfels_storage(struct surfels *s, struct surfels_buffer *out, const char *w
 {
 	GLint64 most = 0;
 	GLint texels = 0;
-	size_t texel = format == GL_R32UI ? 4 : format == GL_RGBA16F || format == GL_RG32UI ? 8 : 16;
+	size_t texel = format == GL_R32UI || format == GL_R32F ? 4 : format == GL_RGBA16F || format == GL_RG32UI ? 8 : 16;
 
 	glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
 	glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
-	/* links and taps are bound in parts; all else at once */
 	if (format && bytes / texel > (size_t)texels) {
 		gr_error("surfels: %s: %zu texels, this GPU's buffer textures hold %d; a larger spacing_m helps",
 			 what, bytes / texel, texels);
@@ -63,42 +62,55 @@ static size_t entry(size_t i, size_t each, size_t k)
 	return (i / SURFELS_GROUP * each + k) * SURFELS_GROUP + i % SURFELS_GROUP;
 }
 
-/* Surfels, in whole groups, whose entries of that many bytes a shader can see at once. */
-static int part_of(const char *what, size_t bytes_each, uint32_t *out)
+/*
+ * Entries of all surfels, `texels` of four words each, seen in parts of so many
+ * surfels, whole groups, as a buffer texture can have at once.
+ */
+static int upload_parts(struct surfels *s, struct surfels_buffer *to, const char *what, size_t padded,
+			size_t texels, const void *data, uint32_t *out)
 {
-	GLint64 most = 0;
+	GLint most = 0;
+	int result;
 
-	glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
-	size_t groups = bytes_each > 0 ? (size_t)most / (bytes_each * SURFELS_GROUP) : 0;
+	glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+	size_t groups = texels > 0 ? (size_t)most / (texels * SURFELS_GROUP) : 0;
 
 	if (groups == 0) {
-		gr_error("surfels: %s of %d surfels are %zu bytes, this GPU's storage blocks hold %lld",
-			 what, SURFELS_GROUP, bytes_each * SURFELS_GROUP, (long long)most);
+		gr_error("surfels: %s of %d surfels are %zu texels, this GPU's buffer textures hold %d", what,
+			 SURFELS_GROUP, texels * SURFELS_GROUP, most);
 		return GR_ERR_RANGE;
 	}
 	*out = groups > UINT32_MAX / SURFELS_GROUP / 2 ? UINT32_MAX / 2 / SURFELS_GROUP * SURFELS_GROUP
 						       : (uint32_t)(groups * SURFELS_GROUP);
+	result = surfels_storage(s, to, what, 0, padded * texels * 16, data);
+	if (result != GR_OK)
+		return result;
+	glCreateTextures(GL_TEXTURE_BUFFER, 1, &to->texture);
+	glTextureBufferRange(to->texture, GL_RGBA32UI, to->buffer, 0,
+			     (GLsizeiptr)((padded < *out ? padded : *out) * texels * 16));
 	return GR_OK;
 }
 
+/* Four a texel; nothing is the dark surfel at the end. */
 static int upload_links(struct surfels *s, const struct surfel_set *set)
 {
 	size_t padded = (set->count + SURFELS_GROUP - 1) / SURFELS_GROUP * SURFELS_GROUP;
-	size_t number = padded * set->links_each;
-	uint32_t *links = malloc(number * sizeof *links);
-	int result = part_of("links", set->links_each * sizeof *links, &s->links_part);
+	size_t texels = surfels_link_texels(set->links_each);
+	uint32_t *links = malloc(padded * texels * 16);
+	int result;
 
 	if (!links)
 		return GR_ERR_NOMEM;
 	for (size_t i = 0; i < padded; i++)
-		for (size_t k = 0; k < set->links_each; k++) {
-			uint32_t link = i < set->count ? set->links[i * set->links_each + k] : SURFEL_NONE;
+		for (size_t k = 0; k < 4 * texels; k++) {
+			uint32_t link = i < set->count && k < set->links_each
+						? set->links[i * set->links_each + k]
+						: SURFEL_NONE;
 
-			/* nothing: the dark surfel at the end */
-			links[entry(i, set->links_each, k)] = link < set->count ? link : (uint32_t)set->count;
+			links[4 * entry(i, texels, k / 4) + k % 4] =
+				link < set->count ? link : (uint32_t)set->count;
 		}
-	if (result == GR_OK)
-		result = surfels_storage(s, &s->links, "links", 0, number * sizeof *links, links);
+	result = upload_parts(s, &s->links, "links", padded, texels, links, &s->links_part);
 	free(links);
 	return result;
 }
@@ -106,33 +118,46 @@ static int upload_links(struct surfels *s, const struct surfel_set *set)
 static int upload_taps(struct surfels *s, const struct surfel_set *set)
 {
 	size_t padded = (set->count + SURFELS_GROUP - 1) / SURFELS_GROUP * SURFELS_GROUP;
-	size_t number = padded * set->taps_each;
-	struct surfel_tap *taps = calloc(number, sizeof *taps);
-	int result = part_of("taps", set->taps_each * sizeof *taps, &s->taps_part);
+	struct surfel_tap *taps = calloc(padded * set->taps_each, sizeof *taps);
+	int result;
 
-	_Static_assert(sizeof *taps == 16, "a uvec4");
+	_Static_assert(sizeof *taps == 16, "a texel");
 	if (!taps)
 		return GR_ERR_NOMEM;
 	for (size_t i = 0; i < set->count; i++)
 		for (size_t k = 0; k < set->taps_each; k++)
 			taps[entry(i, set->taps_each, k)] = set->taps[i * set->taps_each + k];
-	if (result == GR_OK)
-		result = surfels_storage(s, &s->taps, "taps", 0, number * sizeof *taps, taps);
+	result = upload_parts(s, &s->taps, "taps", padded, set->taps_each, taps, &s->taps_part);
 	free(taps);
 	return result;
 }
 
-/* Three floats a surfel as four. */
+/* One more, of zeros, at the end, for links that bring nothing. */
+static int upload_texels(struct surfels *s, const struct surfel_set *set)
+{
+	int result = surfels_storage(s, &s->texels, "surfels", GL_RGBA32UI,
+				     (set->count + 1) * sizeof *set->surfels, NULL);
+
+	_Static_assert(sizeof *set->surfels == 32, "two texels");
+	if (result == GR_OK)
+		glNamedBufferSubData(s->texels.buffer, 0, (GLsizeiptr)(set->count * sizeof *set->surfels),
+				     set->surfels);
+	return result;
+}
+
+/* Three floats a surfel as four; the last: `fourth` of each, NULL: 0. */
 static int upload_colours(struct surfels *s, struct surfels_buffer *out, const char *what,
-			  const float (*from)[3], size_t count)
+			  const float (*from)[3], const float *fourth, size_t count)
 {
 	float *rows = calloc(4 * (count + 1), sizeof *rows);
 	int result;
 
 	if (!rows)
 		return GR_ERR_NOMEM;
-	for (size_t i = 0; i < count; i++)
+	for (size_t i = 0; i < count; i++) {
 		memcpy(rows + 4 * i, from[i], sizeof from[i]);
+		rows[4 * i + 3] = fourth ? fourth[i] : 0;
+	}
 	result = surfels_storage(s, out, what, GL_RGBA32F, (count + 1) * 4 * sizeof *rows, rows);
 	free(rows);
 	return result;
@@ -225,10 +250,8 @@ int surfels_upload(struct surfels *s, const struct surfel_set *set)
 	size_t colours = (set->count + 1) * 4 * sizeof(float);
 	struct surfels_buffer *const work[5] = { &s->direct, &s->found, &s->shown, &s->radiosity[0],
 						&s->radiosity[1] };
-	int result = surfels_storage(s, &s->texels, "surfels", GL_RGBA32UI,
-				     set->count * sizeof *set->surfels, set->surfels);
+	int result = upload_texels(s, set);
 
-	_Static_assert(sizeof(struct surfel) == 32, "two texels");
 	if (result == GR_OK)
 		result = settle_gathers(set, &s->settle_gathers);
 	if (result == GR_OK)
@@ -237,13 +260,13 @@ int surfels_upload(struct surfels *s, const struct surfel_set *set)
 		result = upload_taps(s, set);
 	if (result == GR_OK)
 		result = upload_colours(s, &s->albedo, "reflectances", (const float(*)[3])set->albedo,
-					set->count);
+					set->area, set->count);
 	if (result == GR_OK)
 		result = upload_colours(s, &s->emissive, "light of emissive surfaces",
-					(const float(*)[3])set->fixed_emissive, set->count);
+					(const float(*)[3])set->fixed_emissive, NULL, set->count);
 	if (result == GR_OK)
 		result = upload_colours(s, &s->other, "fixed light",
-					(const float(*)[3])set->fixed_other, set->count);
+					(const float(*)[3])set->fixed_other, NULL, set->count);
 	for (size_t i = 0; i < 5 && result == GR_OK; i++)
 		result = surfels_storage(s, work[i], "light", GL_RGBA32F, colours, NULL);
 	if (result == GR_OK)

@@ -24,9 +24,29 @@ float lamp_cone(Lamp lamp, vec3 to_lamp)
 	return clamp((c - lamp.cone.x) * lamp.cone.z, 0.0, 1.0);
 }
 
+// The same as a mean over a piece of a plane with that normal, `half_m` metres to both
+// sides along the way on which the angle changes most: its edge passes evenly.
+float lamp_cone_over(Lamp lamp, vec3 n, vec3 to_lamp, float metres, float half_m)
+{
+	float c = -dot(lamp.direction.xyz, to_lamp);
+	vec3 slope = lamp.direction.xyz + c * to_lamp; // of c, times the distance
+
+	slope -= dot(slope, n) * n;
+	// nearby a straight course does not hold: never over a quarter of the cone
+	float reach = clamp(length(slope) * half_m / metres, 1e-4, max(0.25 * (1.0 - lamp.cone.x), 1e-4));
+	// integral of lamp_cone up to both ends: none, a parabola, a straight line
+	vec2 from = vec2(c + reach, c - reach) - lamp.cone.x;
+	float width = lamp.cone.z == 0.0 ? 0.0 : lamp.cone.y - lamp.cone.x;
+	vec2 edge = clamp(from, 0.0, width);
+	vec2 sum = 0.5 * lamp.cone.z * edge * edge + max(from - width, 0.0);
+
+	return lamp.direction.w != 0.0 || from.y >= width ? 1.0 : clamp((sum.x - sum.y) / (2.0 * reach), 0.0, 1.0);
+}
+
 // Irradiance on a plane through p that faces the lamp, W/m^2, nothing in
-// between but the medium. Out: unit vector to the lamp and the distance.
-vec3 lamp_irradiance(Lamp lamp, vec3 p, out vec3 to_lamp, out float metres)
+// between but the medium, and as if a spot had no cone. Out: unit vector to the
+// lamp and the distance.
+vec3 lamp_irradiance_uncut(Lamp lamp, vec3 p, out vec3 to_lamp, out float metres)
 {
 	if (lamp.direction.w == 2.0) {
 		to_lamp = -lamp.direction.xyz;
@@ -38,6 +58,12 @@ vec3 lamp_irradiance(Lamp lamp, vec3 p, out vec3 to_lamp, out float metres)
 	// A surface inside the source gets what the source's own surface has.
 	metres = max(length(d), lamp.intensity.a);
 	to_lamp = d / metres;
-	return lamp.intensity.rgb * (lamp_cone(lamp, to_lamp) * medium_to_surface(metres) /
-				     (metres * metres));
+	return lamp.intensity.rgb * (medium_to_surface(metres) / (metres * metres));
+}
+
+vec3 lamp_irradiance(Lamp lamp, vec3 p, out vec3 to_lamp, out float metres)
+{
+	vec3 e = lamp_irradiance_uncut(lamp, p, to_lamp, metres);
+
+	return e * lamp_cone(lamp, to_lamp);
 }

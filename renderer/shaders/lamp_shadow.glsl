@@ -59,14 +59,12 @@ float lamp_visibility(Lamp lamp, vec3 p, vec3 n, vec3 to_lamp, float metres, boo
 			     soft ? clamp(width, one_texel, widest) : one_texel, taps);
 }
 
-// Whether a point is lit, by one comparison of 2 x 2 texels: for what takes the
-// mean over many points.
-float lamp_lit(Lamp lamp, vec3 p, vec3 n, vec3 to_lamp, float metres, bool reaches)
+// Whether a point is lit, by one comparison of 2 x 2 texels of a layer: for what takes
+// the mean over many points.
+float lamp_lit(MapLayer layer, int index, vec3 p, vec3 n, vec3 to_lamp, float metres)
 {
-	int index = lamp.maps.x + (lamp.maps.y == 6 ? shadow_face(-to_lamp) : 0);
-	MapLayer layer = lamp_layers[index];
 	ShadowPoint s = shadow_point(layer, p, n, -to_lamp * metres, metres);
+	float lit = texture(lamp_depth_compare, vec4(s.uvz.xy, float(index), s.uvz.z));
 
-	return shadow_filter(lamp_depth_compare, index, s, 0.0,
-			     reaches && s.axial > layer.range.x ? 1 : 0);
+	return s.axial > layer.range.x ? lit : 1.0;
 }

@@ -9,9 +9,9 @@ layout(location = 0) uniform uvec2 counts;     // coefficients of all probes; li
 layout(location = 1) uniform float extinction; // log2 of what a metre lets through
 layout(binding = 8) uniform samplerBuffer radiosity;
 layout(binding = 9) uniform usamplerBuffer surfel_texels; // two a surfel
-layout(std430, binding = 9) readonly buffer Links { uint links[]; };
-layout(std430, binding = 10) readonly buffer Basis { float basis[]; }; // PROBE_SH a link
-layout(std430, binding = 11) readonly buffer Fixed { vec4 fixed_light[]; };
+layout(binding = 10) uniform usamplerBuffer links;
+layout(binding = 11) uniform samplerBuffer basis; // PROBE_SH a link
+layout(binding = 12) uniform samplerBuffer fixed_light;
 layout(std430, binding = 12) writeonly buffer Light { vec4 light[]; };
 
 void main()
@@ -28,8 +28,9 @@ void main()
 	vec3 sum = vec3(0.0);
 
 	for (uint k = 0u; k < counts.y; k++) {
-		int link = int(links[probe * counts.y + k]);
-		vec3 b = texelFetch(radiosity, link).rgb * basis[uint(PROBE_SH) * k + c];
+		int link = int(texelFetch(links, int(probe * counts.y + k)).r);
+		vec3 b = texelFetch(radiosity, link).rgb *
+			 texelFetch(basis, int(uint(PROBE_SH) * k + c)).r;
 
 		if (extinction != 0.0)
 			b *= exp2(extinction *
@@ -37,5 +38,5 @@ void main()
 		sum += b;
 	}
 	// radiance b/pi, each link 4 pi / links steradians
-	light[at] = vec4(fixed_light[at].rgb + sum * (4.0 / float(counts.y)), 0.0);
+	light[at] = vec4(texelFetch(fixed_light, int(at)).rgb + sum * (4.0 / float(counts.y)), 0.0);
 }

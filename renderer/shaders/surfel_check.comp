@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 
 layout(binding = 8) uniform samplerBuffer radiosity;
 layout(binding = 9) uniform samplerBuffer before;
-layout(std430, binding = 12) readonly buffer Found { vec4 found[]; };
+layout(binding = 10) uniform samplerBuffer found;
 layout(std430, binding = 15) buffer CheckBuffer {
 	uint nonfinite, change, largest;
 } check;
@@ -26,7 +26,7 @@ void main()
 	}
 	barrier();
 	if (mine) {
-		vec3 now = texelFetch(radiosity, int(i)).rgb, e = found[i].rgb;
+		vec3 now = texelFetch(radiosity, int(i)).rgb, e = texelFetch(found, int(i)).rgb;
 		vec3 moved = abs(now - texelFetch(before, int(i)).rgb);
 
 		if (any(isnan(now)) || any(isinf(now)) || any(isnan(e)) || any(isinf(e))) {

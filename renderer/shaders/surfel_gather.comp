@@ -8,18 +8,18 @@ layout(local_size_x = 64) in;
 #include "surfel_slice.glsl"
 
 layout(binding = 8) uniform samplerBuffer radiosity; // of the last gather; one more, dark, at the end
-layout(location = 1) uniform uint link_base;         // of the bound part of the links: its first surfel
 #ifdef MEDIUM
 layout(binding = 9) uniform usamplerBuffer surfel_texels; // two a surfel
 layout(location = 2) uniform float extinction;            // log2 of what a metre lets through
 #endif
-layout(std430, binding = 9) readonly buffer Links { uint links[]; };
-layout(std430, binding = 10) readonly buffer Albedo { vec4 albedo[]; };
-layout(std430, binding = 11) readonly buffer Emissive { vec4 emissive[]; };
+layout(binding = 10) uniform usamplerBuffer links;   // four a texel; the last are dark
+layout(location = 1) uniform uint link_base;         // of the bound part of the links: its first surfel
+layout(binding = 11) uniform samplerBuffer albedo;
+layout(binding = 12) uniform samplerBuffer emissive;
+layout(binding = 13) uniform samplerBuffer direct;
+layout(binding = 14) uniform samplerBuffer other;
 layout(std430, binding = 12) writeonly buffer Found { vec4 found[]; };
-layout(std430, binding = 13) readonly buffer Direct { vec4 direct[]; };
 layout(std430, binding = 14) writeonly buffer Radiosity { vec4 next[]; };
-layout(std430, binding = 15) readonly buffer Other { vec4 other[]; };
 
 void main()
 {
@@ -27,25 +27,29 @@ void main()
 
 	if (!surfel_of_slice(i))
 		return;
-	uint each = surfels.counts.y;
-	uint at = surfel_entry(i - link_base, each, 0u);
+	uint each = surfels.counts.y, texels = (each + 3u) / 4u;
+	uint at = surfel_entry(i - link_base, texels, 0u);
 	vec3 sum = vec3(0.0);
 #ifdef MEDIUM
 	vec3 here = uintBitsToFloat(texelFetch(surfel_texels, int(2u * i)).xyz);
 #endif
 
-	for (uint k = 0u; k < each; k++) {
-		uint link = links[at + k * SURFEL_GROUP];
-		vec3 b = texelFetch(radiosity, int(link)).rgb;
-#ifdef MEDIUM
-		vec3 there = uintBitsToFloat(texelFetch(surfel_texels, int(2u * link)).xyz);
+	for (uint k = 0u; k < texels; k++) {
+		uvec4 four = texelFetch(links, int(at + k * SURFEL_GROUP));
 
-		b *= exp2(extinction * distance(here, there));
+		for (int j = 0; j < 4; j++) {
+			vec3 b = texelFetch(radiosity, int(four[j])).rgb;
+#ifdef MEDIUM
+			vec3 there = uintBitsToFloat(texelFetch(surfel_texels, int(2u * four[j])).xyz);
+
+			b *= exp2(extinction * distance(here, there));
 #endif
-		sum += b;
+			sum += b;
+		}
 	}
-	vec3 e = sum / float(each) + other[i].rgb;
+	vec3 e = sum / float(each) + texelFetch(other, int(i)).rgb;
+	vec3 lit = texelFetch(direct, int(i)).rgb + texelFetch(emissive, int(i)).rgb + e;
 
 	found[i] = vec4(e, 0.0);
-	next[i] = vec4(albedo[i].rgb * (direct[i].rgb + emissive[i].rgb + e), 0.0);
+	next[i] = vec4(texelFetch(albedo, int(i)).rgb * lit, 0.0);
 }

@@ -13,32 +13,55 @@ layout(local_size_x = 64) in;
 #include "shadow.glsl"
 #include "lamp_shadow.glsl"
 
+layout(binding = 10) uniform usamplerBuffer taps;
 layout(location = 1) uniform uint tap_base; // of the bound part of the taps: its first surfel
-layout(std430, binding = 9) readonly buffer Taps { uvec4 taps[]; };
 #endif
-layout(std430, binding = 10) readonly buffer Albedo { vec4 albedo[]; };
-layout(std430, binding = 11) readonly buffer Emissive { vec4 emissive[]; };
-layout(std430, binding = 12) readonly buffer Found { vec4 found[]; }; // indirect, and fixed light but the emissive
-layout(std430, binding = 13) buffer Direct { vec4 direct[]; };
+layout(binding = 11) uniform samplerBuffer albedo;
+layout(binding = 12) uniform samplerBuffer emissive;
+layout(binding = 13) uniform samplerBuffer found; // indirect, and fixed light but the emissive
+layout(std430, binding = 13) writeonly buffer Direct { vec4 direct[]; };
 layout(std430, binding = 14) writeonly buffer Radiosity { vec4 radiosity[]; };
 
 #ifdef LAMPS
-vec3 light_at(vec3 p, vec3 n)
+// Of one lamp, by a layer of its map, on a tap: E over the lamp's intensity.
+vec3 light_at(Lamp lamp, MapLayer layer, int index, vec3 p, vec3 n, vec3 to_lamp, float metres, vec3 e,
+	      float half_m)
 {
-	vec3 sum = vec3(0.0);
+	float c = dot(n, to_lamp) * lamp_cone_over(lamp, n, to_lamp, metres, half_m);
 
-	for (int k = 0; k < lamp_count.x; k++) {
-		Lamp lamp = lamps[k];
-		vec3 to_lamp;
-		float metres;
-		vec3 e = lamp_irradiance(lamp, p, to_lamp, metres);
-		float c = dot(n, to_lamp);
-		bool reaches = c > 0.0 && e != vec3(0.0);
-		float lit = lamp_lit(lamp, p, n, to_lamp, metres, reaches);
+	return c > 0.0 ? e * (c * lamp_lit(layer, index, p, n, to_lamp, metres)) : vec3(0.0);
+}
 
-		sum += reaches ? e * (c * lit) : vec3(0.0);
+uvec4 tap_of(uint i, uint k)
+{
+	return texelFetch(taps, int(surfel_entry(i - tap_base, surfels.counts.z, k)));
+}
+
+// Mean over the taps. A lamp with one map has its layer read once; one with six finds
+// that of each tap. The lengths of the loops choose, not a branch (see lamp_visibility).
+vec3 light_of(Lamp lamp, uint i, float half_m)
+{
+	bool six = lamp.maps.y == 6;
+	MapLayer layer = lamp_layers[lamp.maps.x];
+	vec3 sum = vec3(0.0), to_lamp;
+	float metres;
+
+	for (uint k = six ? surfels.counts.z : 0u; k < surfels.counts.z; k++) {
+		uvec4 tap = tap_of(i, k);
+		vec3 p = uintBitsToFloat(tap.xyz), n = surfel_normal(tap.w);
+		vec3 e = lamp_irradiance_uncut(lamp, p, to_lamp, metres);
+
+		sum += light_at(lamp, layer, lamp.maps.x, p, n, to_lamp, metres, e, half_m);
 	}
-	return sum;
+	for (uint k = six ? 0u : surfels.counts.z; k < surfels.counts.z; k++) {
+		uvec4 tap = tap_of(i, k);
+		vec3 p = uintBitsToFloat(tap.xyz), n = surfel_normal(tap.w);
+		vec3 e = lamp_irradiance_uncut(lamp, p, to_lamp, metres);
+		int index = lamp.maps.x + shadow_face(-to_lamp);
+
+		sum += light_at(lamp, lamp_layers[index], index, p, n, to_lamp, metres, e, half_m);
+	}
+	return sum / float(surfels.counts.z);
 }
 #endif
 
@@ -48,15 +71,15 @@ void main()
 
 	if (!surfel_of_slice(i))
 		return;
+	vec4 reflects = texelFetch(albedo, int(i)); // w: m^2 of the patch
 	vec3 sum = vec3(0.0);
 #ifdef LAMPS
-	for (uint k = 0u; k < surfels.counts.z; k++) {
-		uvec4 tap = taps[surfel_entry(i - tap_base, surfels.counts.z, k)];
+	float half_m = sqrt(reflects.w / float(surfels.counts.z));
 
-		sum += light_at(uintBitsToFloat(tap.xyz), surfel_normal(tap.w));
-	}
-	sum /= float(surfels.counts.z);
+	for (int k = 0; k < lamp_count.x; k++)
+		sum += light_of(lamps[k], i, half_m);
 #endif
 	direct[i] = vec4(sum, 0.0);
-	radiosity[i] = vec4(albedo[i].rgb * (sum + emissive[i].rgb + found[i].rgb), 0.0);
+	sum += texelFetch(emissive, int(i)).rgb + texelFetch(found, int(i)).rgb;
+	radiosity[i] = vec4(reflects.rgb * sum, 0.0);
 }

@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 layout(location = 1) uniform uint place; // of the slice among the scales
 layout(binding = 8) uniform samplerBuffer radiosity;
 layout(std430, binding = 8) writeonly buffer Words { uvec2 words[]; };
-layout(std430, binding = 12) readonly buffer Found { vec4 found[]; };
+layout(binding = 9) uniform samplerBuffer found;
 // largest radiosity and irradiance as float bits, then their exponents (unpacking reads those)
 layout(std430, binding = 15) buffer Scales { uvec4 scales[]; };
 
@@ -25,7 +25,7 @@ void main()
 
 	if (!surfel_of_slice(i))
 		return;
-	vec3 b = texelFetch(radiosity, int(i)).rgb, e = found[i].rgb;
+	vec3 b = texelFetch(radiosity, int(i)).rgb, e = texelFetch(found, int(i)).rgb;
 #if STAGE == 0
 	atomicMax(scales[place].x, largest(b));
 	atomicMax(scales[place].y, largest(e));

@@ -6,9 +6,9 @@ layout(local_size_x = 64) in;
 #include "surfel_slice.glsl"
 
 layout(binding = 8) uniform samplerBuffer found;
-layout(std430, binding = 9) readonly buffer First { uint first[]; };
-layout(std430, binding = 10) readonly buffer Around { uvec2 around[]; }; // surfel, weight
-layout(std430, binding = 11) writeonly buffer Shown { vec4 shown[]; };
+layout(binding = 9) uniform usamplerBuffer first;
+layout(binding = 10) uniform usamplerBuffer around; // surfel, weight
+layout(std430, binding = 12) writeonly buffer Shown { vec4 shown[]; };
 
 void main()
 {
@@ -18,8 +18,13 @@ void main()
 		return;
 	vec3 sum = vec3(0.0);
 
-	for (uint k = first[i]; k < first[i + 1u]; k++)
-		sum += uintBitsToFloat(around[k].y) * texelFetch(found, int(around[k].x)).rgb;
+	uint last = texelFetch(first, int(i) + 1).r;
+
+	for (uint k = texelFetch(first, int(i)).r; k < last; k++) {
+		uvec2 one = texelFetch(around, int(k)).rg;
+
+		sum += uintBitsToFloat(one.y) * texelFetch(found, int(one.x)).rgb;
+	}
 	// The fit may lead below nothing; a NaN must stay one.
 	shown[i] = vec4(mix(sum, vec3(0.0), lessThan(sum, vec3(0.0))), 0.0);
 }

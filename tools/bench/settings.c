@@ -104,7 +104,7 @@ static void make_label(struct bench_case *c)
 	len = strlen(c->label);
 	if (gi->gathers > 1)
 		len += (size_t)snprintf(c->label + len, sizeof c->label - len, ", %d gathers", gi->gathers);
-	if (gi->taps != 16 && len < sizeof c->label)
+	if (gi->taps != 64 && len < sizeof c->label)
 		snprintf(c->label + len, sizeof c->label - len, ", %d taps", gi->taps);
 }
 
