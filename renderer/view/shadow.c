@@ -199,6 +199,24 @@ static double farthest_corner(const struct shadow_stage *stage, const float from
 	return sqrt(sum) * 1.001 + 2 * LAMP_NEAR * stage->least_m;
 }
 
+/*
+ * Axes of a lamp's only map: turned about its way, for edges of buildings are level and
+ * upright. One along a row of texels would jump by a whole texel at once as the lamp moves;
+ * the golden ratio's square as slope is nowhere near along any.
+ */
+static void turned_basis(const float direction[3], struct map_basis *out)
+{
+	static const double c = 0.93417235896271570, s = 0.35682208977308993;
+	struct map_basis straight;
+
+	map_basis_look(direction, &straight);
+	*out = straight;
+	for (int i = 0; i < 3; i++) {
+		out->right[i] = c * straight.right[i] + s * straight.up[i];
+		out->up[i] = c * straight.up[i] - s * straight.right[i];
+	}
+}
+
 /* A map that just holds the scene's bounds, seen along the lamp's direction. */
 static void directional_view(const struct shadow_stage *stage, const struct lamp_record *lamp,
 			     int pixels, int margin, struct rsm_view *view)
@@ -209,7 +227,7 @@ static void directional_view(const struct shadow_stage *stage, const struct lamp
 
 	for (int i = 0; i < 3; i++)
 		high[i] = -INFINITY;
-	map_basis_look(lamp->direction, &basis);
+	turned_basis(lamp->direction, &basis);
 	const double *axes[3] = { basis.right, basis.up, basis.back };
 
 	for (int corner = 0; corner < 8; corner++)
@@ -248,7 +266,7 @@ static void lamp_view(const struct shadow_stage *stage, int index, int face, int
 		return;
 	}
 	if (stage->state[index].count == 1) {
-		map_basis_look(lamp->direction, &basis);
+		turned_basis(lamp->direction, &basis);
 		half = tan(0.5 * (double)file->cone_rad);
 	} else {
 		map_basis_face(&world, face, &basis);
