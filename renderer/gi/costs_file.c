@@ -18,7 +18,7 @@
 #include <unistd.h>
 
 /*
- *	grotto-costs 1
+ *	grotto-costs 2
  *	device llvmpipe (LLVM 15.0.6, 256 bits)
  *	lattice_frame 2000000
  *	...
@@ -26,7 +26,7 @@
  *
  * Numbers are whole picoseconds: no locale, no rounding to argue about.
  */
-#define HEAD "grotto-costs 1\n"
+#define HEAD "grotto-costs 2\n"
 #define SUM_BYTES 16
 #define PICO 1e3
 #define NUMBER_MAX UINT64_C(1000000000000000) /* 1000 s */

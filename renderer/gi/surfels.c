@@ -160,11 +160,12 @@ static bool update_slice(struct surfels *s, bool changed, bool lamps)
 
 	if (!works)
 		return false;
-	/* the last frame's gathers have written over this node's slice */
-	surfels_share_restore(s);
 	if (arrived) {
 		surfels_smooth(s);
 		surfels_probes_gather(s);
+	} else {
+		/* the last frame's gathers have written over this node's slice */
+		surfels_share_restore(s);
 	}
 	if (changed || !s->lit)
 		surfels_relight(s, own, lamps);

@@ -77,6 +77,7 @@ struct surfels_share {
 	 * scales of the slices, two words each, this node's newest one last.
 	 */
 	unsigned used, fresh, scales;
+	unsigned used_texture, scales_texture;
 	unsigned staging; /* fresh slice with its scales, mapped */
 	const volatile uint32_t *staging_map;
 	bool staged;	   /* not yet taken */
@@ -178,7 +179,7 @@ void surfels_share_finish(struct surfels *s);
 struct surfels_run surfels_share_run(const struct surfels *s, unsigned index);
 /* New slices: what is in use, cut and rounded anew. */
 void surfels_share_recut(struct surfels *s);
-/* Takes what has arrived into use. True when there was any. */
+/* Takes what has arrived into use, where the passes work. True when there was any. */
 bool surfels_share_apply(struct surfels *s);
 /* Own slice as it is in use, where the passes work. */
 void surfels_share_restore(struct surfels *s);

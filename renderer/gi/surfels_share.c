@@ -79,6 +79,10 @@ int surfels_share_init(struct surfels *s, const struct surfel_set *set)
 		glNamedBufferStorage(*buffers[i], i == 2 ? scales : bytes, NULL, GL_DYNAMIC_STORAGE_BIT);
 		glClearNamedBufferData(*buffers[i], GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
 	}
+	glCreateTextures(GL_TEXTURE_BUFFER, 1, &share->used_texture);
+	glTextureBuffer(share->used_texture, GL_RG32UI, share->used);
+	glCreateTextures(GL_TEXTURE_BUFFER, 1, &share->scales_texture);
+	glTextureBuffer(share->scales_texture, GL_RGBA32UI, share->scales);
 	glCreateBuffers(1, &share->staging);
 	glNamedBufferStorage(share->staging, bytes + 8, NULL, flags);
 	share->staging_map = glMapNamedBufferRange(share->staging, 0, bytes + 8, flags);
@@ -93,6 +97,8 @@ void surfels_share_finish(struct surfels *s)
 	if (share->staging_map)
 		glUnmapNamedBuffer(share->staging);
 	share->staging_map = NULL;
+	glDeleteTextures(1, &share->used_texture);
+	glDeleteTextures(1, &share->scales_texture);
 	const unsigned buffers[4] = { share->used, share->fresh, share->scales, share->staging };
 	glDeleteBuffers(4, buffers);
 	for (int i = 0; i < 3; i++)
@@ -125,21 +131,32 @@ static void pack(struct surfels *s, struct surfels_run run, unsigned words, unsi
 	surfels_barrier();
 }
 
-/* What is in use of a slice, to where it is worked with. */
-static void unpack(struct surfels *s, unsigned index)
+/* What is in use of a run, to where it is worked with. */
+static void unpack(struct surfels *s, struct surfels_run run)
 {
-	bind_words(s, s->share.used);
+	struct surfels_share *share = &s->share;
+
+	glBindBufferBase(GL_UNIFORM_BUFFER, SURFELS_BINDING_BLOCK, s->block);
+	glBindTextureUnit(SURFELS_UNIT_RADIOSITY, share->used_texture);
+	glBindTextureUnit(SURFELS_UNIT_BEFORE, share->scales_texture);
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SURFELS_BINDING_FOUND, s->found.buffer);
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SURFELS_BINDING_DIRECT, s->radiosity[0].buffer);
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SURFELS_BINDING_RADIOSITY, s->radiosity[1].buffer);
 	surfels_barrier();
-	glProgramUniform1ui(s->share.programs[UNPACK], 1, index);
-	surfels_dispatch(s->share.programs[UNPACK], surfels_share_run(s, index));
+	glProgramUniform2ui(share->programs[UNPACK], 1, share->count,
+			    (uint32_t)((s->count + SURFELS_GROUP - 1) / SURFELS_GROUP));
+	surfels_dispatch(share->programs[UNPACK], run);
 	surfels_barrier();
+}
+
+static void unpack_all(struct surfels *s)
+{
+	unpack(s, (struct surfels_run){ 0, (uint32_t)s->count });
 }
 
 void surfels_share_restore(struct surfels *s)
 {
-	unpack(s, s->share.index);
+	unpack(s, surfels_share_run(s, s->share.index));
 }
 
 static void stage(struct surfels *s, unsigned words, unsigned place)
@@ -164,10 +181,9 @@ void surfels_share_recut(struct surfels *s)
 	memset(share->has_arrived, 0, sizeof share->has_arrived);
 	if (share->count == 1)
 		return;
-	for (unsigned i = 0; i < share->count; i++) {
+	for (unsigned i = 0; i < share->count; i++)
 		pack(s, surfels_share_run(s, i), share->used, i);
-		unpack(s, i);
-	}
+	unpack_all(s);
 	stage(s, share->used, share->index);
 }
 
@@ -190,7 +206,6 @@ bool surfels_share_apply(struct surfels *s)
 					 (GLintptr)own.first * 8, (GLsizeiptr)(words_of(own) * 4));
 		glCopyNamedBufferSubData(share->scales, share->scales, FRESH * 16, share->index * 16,
 					 16);
-		unpack(s, share->index);
 		share->taken = false;
 	}
 	for (unsigned i = 0; i < share->count; i++) {
@@ -202,10 +217,12 @@ bool surfels_share_apply(struct surfels *s)
 				     (GLsizeiptr)(words_of(run) * 4),
 				     share->arrived + 2 * (size_t)run.first);
 		glNamedBufferSubData(share->scales, i * 16 + 8, 8, share->arrived_scales[i]);
-		unpack(s, i);
 		share->has_arrived[i] = false;
 		any = true;
 	}
+	/* and this node's own slice, which the last frame's gathers have written over */
+	if (any)
+		unpack_all(s);
 	return any;
 }
 

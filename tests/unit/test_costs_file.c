@@ -93,7 +93,7 @@ static void numbers_that_cannot_be(void **state)
 	for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
 		unsigned char hash[16];
 		char text[COSTS_FILE_MAX], hex[33];
-		int len = snprintf(text, sizeof text, "grotto-costs 1\ndevice x\n%s", lines[i]);
+		int len = snprintf(text, sizeof text, "grotto-costs 2\ndevice x\n%s", lines[i]);
 		struct gi_costs found;
 		const char *why;
 
