@@ -45,12 +45,28 @@ tests_unit_test_plan_SOURCES = tests/unit/test_plan.c tests/unit/unit.h
 tests_unit_test_plan_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_plan_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm
 
+SURFELS_GL_SOURCES = tests/accuracy/surfels_gl.c tests/accuracy/surfels_gl.h tests/unit/unit.h \
+	$(SURFEL_RIG_SOURCES)
 check_PROGRAMS += tests/accuracy/test_surfels_gl
 TESTS += tests/accuracy/test_surfels_gl
-tests_accuracy_test_surfels_gl_SOURCES = tests/accuracy/test_surfels_gl.c tests/unit/unit.h \
-	$(SURFEL_RIG_SOURCES)
+tests_accuracy_test_surfels_gl_SOURCES = tests/accuracy/test_surfels_gl.c $(SURFELS_GL_SOURCES)
 tests_accuracy_test_surfels_gl_CFLAGS = $(TEST_CFLAGS) $(CGLM_CFLAGS) $(EPOXY_CFLAGS)
 tests_accuracy_test_surfels_gl_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm
+check_PROGRAMS += tests/accuracy/test_surfels_lamps_gl
+TESTS += tests/accuracy/test_surfels_lamps_gl
+tests_accuracy_test_surfels_lamps_gl_SOURCES = tests/accuracy/test_surfels_lamps_gl.c $(SURFELS_GL_SOURCES)
+tests_accuracy_test_surfels_lamps_gl_CFLAGS = $(TEST_CFLAGS) $(CGLM_CFLAGS) $(EPOXY_CFLAGS)
+tests_accuracy_test_surfels_lamps_gl_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm
+check_PROGRAMS += tests/accuracy/test_surfels_flicker_gl
+TESTS += tests/accuracy/test_surfels_flicker_gl
+tests_accuracy_test_surfels_flicker_gl_SOURCES = tests/accuracy/test_surfels_flicker_gl.c $(SURFELS_GL_SOURCES)
+tests_accuracy_test_surfels_flicker_gl_CFLAGS = $(TEST_CFLAGS) $(CGLM_CFLAGS) $(EPOXY_CFLAGS)
+tests_accuracy_test_surfels_flicker_gl_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm
+check_PROGRAMS += tests/accuracy/test_surfels_share_gl
+TESTS += tests/accuracy/test_surfels_share_gl
+tests_accuracy_test_surfels_share_gl_SOURCES = tests/accuracy/test_surfels_share_gl.c $(SURFELS_GL_SOURCES)
+tests_accuracy_test_surfels_share_gl_CFLAGS = $(TEST_CFLAGS) $(CGLM_CFLAGS) $(EPOXY_CFLAGS)
+tests_accuracy_test_surfels_share_gl_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm
 
 check_PROGRAMS += tests/unit/test_costs_file
 TESTS += tests/unit/test_costs_file

@@ -11,7 +11,7 @@ static void spot_of(struct scene_lamp *lamp, struct frame_lamp *frame, const str
 {
 	memset(lamp, 0, sizeof *lamp);
 	strcpy(lamp->name, "spot");
-	lamp->kind = SCENE_LAMP_SPOT;
+	lamp->kind = spot->half_angle > 0 ? SCENE_LAMP_SPOT : SCENE_LAMP_DIRECTIONAL;
 	lamp->cone_rad = 2 * spot->half_angle;
 	lamp->on = true;
 	memcpy(lamp->position, spot->position, sizeof lamp->position);

@@ -24,7 +24,10 @@ struct surfel_rig {
 	bool fresh;
 };
 
-/* `lamps` spots like the given one, all on; change rig->frame before the first light. */
+/*
+ * `lamps` spots like the given one, hard-edged, all on; half_angle 0: parallel light
+ * of that intensity, W/m^2. Change rig->frame before the first light.
+ */
 int surfel_rig_init(struct surfel_rig *rig, const struct scene *scene, const struct truth_spot *spot,
 		    int lamps, int shadow_pixels);
 void surfel_rig_finish(struct surfel_rig *rig);
