@@ -296,13 +296,40 @@ static void enter_medium(struct path *path, struct v3 direction, float way)
 	path->at.viewer = v3_scale(direction, -1.0f);
 }
 
+static bool reaches(const struct path *path, struct v3 point)
+{
+	float from[3], to[3];
+
+	v3_put(path->at.start, from);
+	v3_put(point, to);
+	return !rays_blocked(path->scene->world.rays, from, to);
+}
+
+/*
+ * Where rays from a hit start. At the edge where two walls meet rounding may put a
+ * point of the one beyond the other, and rays from there would be outside. What
+ * came here passed no wall, so neither may the way to where they start: a little
+ * back on it when need be. false: there is no such place.
+ */
+static bool lift_off(const struct path *path, const struct surface_hit *hit, struct v3 direction,
+		     struct v3 *out_start)
+{
+	*out_start = v3_ahead(hit->position, hit->facing, hit->lift);
+	if (!world_at_edge(&path->scene->world, hit) || reaches(path, *out_start))
+		return true;
+	*out_start = v3_ahead(hit->position, direction, -4.0f * hit->lift);
+	return reaches(path, *out_start);
+}
+
 static bool enter_surface(struct path *path, const struct surface_hit *hit, struct v3 direction)
 {
-	if (hit->dark)
+	struct v3 start;
+
+	if (hit->dark || !lift_off(path, hit, direction, &start))
 		return false;
 	path->at.in_medium = false;
 	path->at.position = hit->position;
-	path->at.start = v3_ahead(hit->position, hit->facing, hit->lift);
+	path->at.start = start;
 	path->at.viewer = v3_scale(direction, -1.0f);
 	world_bsdf(&path->scene->world, hit, path->at.viewer, &path->at.bsdf);
 	return true;

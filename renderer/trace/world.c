@@ -125,6 +125,24 @@ void world_hit(const struct world *world, const struct ray_hit *hit, struct v3 d
 	out->emission = world_emission(world, hit->triangle, hit->u, hit->v);
 }
 
+bool world_at_edge(const struct world *world, const struct surface_hit *hit)
+{
+	struct v3 corner[3], along, cross;
+	float longest = 0.0f, least;
+
+	for (int k = 0; k < 3; k++)
+		corner[k] = world_corner(world, hit->triangle, k);
+	for (int k = 0; k < 3; k++) {
+		along = v3_sub(corner[(k + 1) % 3], corner[k]);
+		longest = larger_of(longest, v3_length(along));
+	}
+	cross = v3_cross(v3_sub(corner[1], corner[0]), v3_sub(corner[2], corner[0]));
+	/* of the three heights the least is that on the longest side */
+	least = longest > 0.0f ? v3_length(cross) / longest : 0.0f;
+	return smaller_of(hit->u, smaller_of(hit->v, 1.0f - hit->u - hit->v)) * least <
+	       2.0f * hit->lift;
+}
+
 void world_bsdf(const struct world *world, const struct surface_hit *hit, struct v3 viewer,
 		struct bsdf *out)
 {

@@ -37,6 +37,8 @@ struct surface_hit {
 };
 void world_hit(const struct world *world, const struct ray_hit *hit, struct v3 direction,
 	       struct surface_hit *out);
+/* Whether rounding may have put a hit beyond an edge of its triangle. */
+bool world_at_edge(const struct world *world, const struct surface_hit *hit);
 void world_bsdf(const struct world *world, const struct surface_hit *hit, struct v3 viewer,
 		struct bsdf *out);
 

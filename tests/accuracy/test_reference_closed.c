@@ -450,6 +450,45 @@ static void sphere_over_plane(void **state)
 	tally_end(&tally);
 }
 
+/*
+ * A closed box that emits 1 inside, and 1e9 outside: not one path comes in, and
+ * least of all where two walls meet and rounding decides on which side a point is.
+ */
+static void nothing_comes_in(void **state)
+{
+	const struct reference_params p = { .seed = 3, .samples = 2048, .max_bounces = 8 };
+	static const float edge[3] = { 1.37f, -1.37f, 0.21f };
+	struct reference_view view = { .eye = { 0.1f, 0.2f, 0.3f }, .right = { 0, 0, 0.2f },
+				       .down = { 2e-6f, 2e-6f, 0 }, .width = 8, .height = 8 };
+	const struct scene_material m = { .name = "wall", .diffuse = { 0.5f, 0.5f, 0.5f },
+					  .emission = { 1, 1, 1 }, .diffuse_image = -1,
+					  .emission_image = -1 };
+	struct reference_film film = { 0 };
+	struct quad quads[6];
+	struct image mean;
+	double most = 0, least = INFINITY;
+	struct closed c;
+
+	(void)state;
+	closed_cube(quads, 0, 1.37f);
+	closed_start(&c, quads, 6, &m, 1);
+	closed_sky(&c, 1e9f);
+	for (int i = 0; i < 3; i++)
+		view.corner[i] = edge[i] - view.eye[i] - 0.5f * (view.right[i] + view.down[i]);
+	assert_int_equal(reference_render(c.reference, &view, &p, &film), GR_OK);
+	assert_int_equal(film.nonfinite, 0);
+	assert_int_equal(reference_film_images(&film, &mean, NULL, NULL), GR_OK);
+	for (int k = 0; k < 3 * 64; k++) {
+		most = fmax(most, (double)mean.data[k]);
+		least = fmin(least, (double)mean.data[k]);
+	}
+	printf("# closed, 1 inside and 1e9 outside, seen at an edge: %.4f to %.4f (in all 2)\n", least, most);
+	assert_true(most < 2.01 && least > 1.9);
+	image_finish(&mean);
+	reference_film_finish(&film);
+	closed_end(&c);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -461,6 +500,7 @@ int main(void)
 		cmocka_unit_test(rectangle_lamp),
 		cmocka_unit_test(infinite_planes),
 		cmocka_unit_test(ggx_albedo),
+		cmocka_unit_test(nothing_comes_in),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
