@@ -118,7 +118,7 @@ static double median(double *values, int count)
 static void shared_work(void **state)
 {
 	struct cluster c;
-	double local[9], node[9];
+	double local[9], node[NODES][9], slowest = 0;
 	size_t bytes = 0;
 	int frames = 0;
 
@@ -134,15 +134,16 @@ static void shared_work(void **state)
 		cluster_frame(&c);
 		assert_true(all_equal(&c));
 		local[i] = c.local_ms;
-		node[i] = 0;
 		for (int k = 0; k < NODES; k++)
-			node[i] = fmax(node[i], c.node_ms[k]);
+			node[k][i] = c.node_ms[k];
 		bytes = c.bytes;
 	}
-	printf("# lamp moving, 4 nodes: slowest node %.2f of one alone (%.1f of %.1f ms of processor time), %zu bytes a frame "
-	       "of all nodes together\n",
-	       median(node, 9) / median(local, 9), median(node, 9), median(local, 9), bytes);
-	assert_true(median(node, 9) < 0.35 * median(local, 9));
+	for (int k = 0; k < NODES; k++)
+		slowest = fmax(slowest, median(node[k], 9));
+	printf("# lamp moving, 4 nodes: slowest node %.2f of one alone (%.1f of %.1f ms of processor time), "
+	       "%zu bytes a frame of all nodes together\n",
+	       slowest / median(local, 9), slowest, median(local, 9), bytes);
+	assert_true(slowest < 0.35 * median(local, 9));
 	do {
 		cluster_frame(&c);
 		assert_true(all_equal(&c));
