@@ -17,6 +17,8 @@ void surfel_bake_params_of(const struct scene_file *file, struct surfel_bake_par
 	out->spacing_m = file->gi.spacing_m;
 	out->links = file->gi.links;
 	out->taps = file->gi.taps;
+	out->absorption_per_m = file->absorption_per_m;
+	out->scattering_per_m = file->scattering_per_m;
 	/* they light what moves, and nothing does; else whoever asks for them */
 	out->probes = file->gi.method == SCENE_GI_PROBES ? file->gi.probes : 0;
 }

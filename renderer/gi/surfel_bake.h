@@ -40,6 +40,7 @@ struct surfel_bake_params {
 	int links;       /* a surfel: 16..4096 */
 	int taps;        /* a surfel: 1..64 */
 	int probes;      /* cells along the longest side of the scene, 1..64; 0: none */
+	float absorption_per_m, scattering_per_m; /* of the air that fixed light goes through */
 	int threads;     /* 0: all cores */
 	uint64_t seed;
 	/*

@@ -31,6 +31,8 @@ void surfel_file_key(const struct scene *scene, const struct surfel_bake_params 
 	gr_write_u32(&w, (uint32_t)params->links);
 	gr_write_u32(&w, (uint32_t)params->taps);
 	gr_write_u32(&w, (uint32_t)params->probes);
+	gr_write_f32(&w, params->absorption_per_m);
+	gr_write_f32(&w, params->scattering_per_m);
 	gr_write_u64(&w, params->seed);
 	crypto_generichash_init(&state, NULL, 0, SURFEL_KEY_BYTES);
 	crypto_generichash_update(&state, numbers, w.len);

@@ -16,6 +16,7 @@ struct fixed {
 	struct bake *bake;
 	struct scene dark;        /* the scene without what surrounds it */
 	struct path_scene emissive;
+	struct medium air;        /* takes what it scatters, too: that comes from the lattice alone */
 	int sets;                 /* of SAMPLER_SET samples a point */
 	atomic_size_t rays;
 };
@@ -77,8 +78,9 @@ static float power_weight(float a, float b)
  * The environment, by its own density and by the cosine, weighed by the power
  * heuristic (Veach 1997): a sun is small, a sky is not.
  */
-static void light_environment(const struct bake *bake, size_t i)
+static void light_environment(const struct fixed *f, size_t i)
 {
+	const struct bake *bake = f->bake;
 	const struct environment *environment = bake->scene->environment;
 	uint64_t key = random_start(bake->params.seed ^ UINT64_C(0x736b79), i);
 	uint32_t count = bake->set->links_each;
@@ -97,7 +99,8 @@ static void light_environment(const struct bake *bake, size_t i)
 		float pdf = environment_sample(environment, (double)v[0], (double)v[1], way, radiance);
 		float cosine = v3_dot(v3_of(way), n);
 		if (cosine > 0 && is_open(bake, from, way)) {
-			weight = power_weight(pdf, cosine / TRACE_PI) * cosine / pdf;
+			weight = power_weight(pdf, cosine / TRACE_PI) * cosine / pdf *
+				 medium_passes(&f->air, from, v3_of(way), INFINITY);
 			for (int c = 0; c < 3; c++)
 				sum[c] += (double)(weight * radiance[c]);
 		}
@@ -107,7 +110,7 @@ static void light_environment(const struct bake *bake, size_t i)
 		if (cosine > 0 && radiance[0] + radiance[1] + radiance[2] > 0 &&
 		    is_open(bake, from, way)) {
 			weight = power_weight(cosine / TRACE_PI, environment_pdf(environment, way)) *
-				 TRACE_PI;
+				 TRACE_PI * medium_passes(&f->air, from, v3_of(way), INFINITY);
 			for (int c = 0; c < 3; c++)
 				sum[c] += (double)(weight * radiance[c]);
 		}
@@ -125,7 +128,7 @@ static void light_all(void *ctx, size_t begin, size_t end, int thread)
 		if (f->emissive.emitters.count > 0)
 			light_emissive(f, i);
 		if (f->bake->scene->environment)
-			light_environment(f->bake, i);
+			light_environment(f, i);
 	}
 }
 
@@ -141,6 +144,9 @@ int bake_fixed(struct bake *bake)
 	f.dark.environment = NULL;
 	f.emissive.world = bake->world;
 	f.emissive.world.scene = &f.dark;
+	medium_init(&f.air, bake->params.absorption_per_m + bake->params.scattering_per_m, 0,
+		    bake->scene->min, bake->scene->max);
+	f.emissive.medium = f.air;
 	f.sets = (bake->params.links + POINTS_EACH * SAMPLER_SET - 1) / (POINTS_EACH * SAMPLER_SET);
 	result = emitters_init(&f.emissive.emitters, &f.emissive.world);
 	if (result == GR_OK && f.emissive.emitters.count + (bake->scene->environment != NULL) > 0)

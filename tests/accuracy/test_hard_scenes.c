@@ -128,6 +128,8 @@ static const struct hard_case cases[] = {
 	{ "emitter of 1e9", bright_emitter, 1, 0, "", AS_TRACED, 0, false },
 	{ "emitter of 1e9, 1 mm", bright_emitter, 0.00025f, 0, "", AS_TRACED, 0, true },
 	{ "emitter of 1e9, 10 km", bright_emitter, 2500, 0, "", AS_TRACED, 0, false },
+	{ "emitter in absorbing air", bright_emitter, 1, 0, "medium = { absorption_per_m = 0.1; };",
+	  AS_TRACED, 0, false },
 	{ "lamp of 1e9", hard_plain, 1, 1e9f, "", AS_TRACED, 1e-5, false },
 	{ "closed black box", black, 1, 60, "", BLACK, 0, false },
 	{ "no lamps at all", hard_plain, 1, 0, "", BLACK, 0, false },
