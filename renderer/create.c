@@ -171,18 +171,13 @@ static void log_environment(const struct renderer *r)
 			   method == SCENE_GI_NONE ? "none" : "lpv");
 }
 
-/* Baked light knows no air. */
+/* Baked light is thinned by the air of the scene file, and never scattered. */
 static void log_medium(const struct renderer *r)
 {
 	if (r->choice.method != SCENE_GI_SURFELS && r->choice.method != SCENE_GI_PROBES)
 		return;
 	if (r->facts.scattering_per_m > 0)
 		gr_warning("the air scatters, which surfels and probes do not carry; gi.method = \"lpv\" does");
-	if (gi_plan_unthinned(&r->facts) > 0)
-		gr_warning("the air absorbs, but what emissive surfaces and the environment throw on "
-			   "surfaces was fixed at baking and is not thinned: their indirect light is up to "
-			   "%s too bright",
-			   gr_plain_percent(gi_plan_unthinned(&r->facts)).text);
 }
 
 static void log_stages(const struct renderer *r, const struct emissive_patches *patches)

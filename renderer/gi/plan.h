@@ -98,8 +98,6 @@ double gi_plan_cost_ms(const struct gi_facts *facts, const struct scene_gi *gi,
 double gi_plan_error(const struct gi_facts *facts, const struct scene_gi *gi);
 /* The factors over and under it within which the bench's scenes lie; >= 1. */
 void gi_plan_spread(enum scene_gi_method method, double *out_under, double *out_over);
-/* Of the light on surfels, a share that absorbing air should take and does not: it is fixed at baking. */
-double gi_plan_unthinned(const struct gi_facts *facts);
 /* About how many surfels settings give. */
 double gi_plan_surfels(const struct gi_facts *facts, const struct scene_gi *gi);
 /*

@@ -28,8 +28,6 @@
 #define LATTICE_FLOOR 0.166
 #define LATTICE_COARSE 1.3 /* over the cells along the longest side */
 #define LATTICE_LAG 0.1 /* over the number of steps, a lamp moving */
-/* What absorbing air would take and does not: of the light that arrives, at most. */
-#define UNTHINNED_MOST 1000.0
 /* Mirrors, for what knows none: over their share of the area. */
 #define MIRROR_MISSED 2.7
 
@@ -55,8 +53,7 @@ static double surfel_error(const struct gi_facts *facts, const struct scene_gi *
 {
 	double spacing = gi_plan_spacing(facts, gi);
 	double sum = square(SURFEL_FLOOR) + square(SURFEL_SPACING * spacing / side_of(facts)) +
-		     square(SURFEL_EDGES * crowding(facts, spacing)) + square(SURFEL_LINKS) / gi->links +
-		     square(gi_plan_unthinned(facts));
+		     square(SURFEL_EDGES * crowding(facts, spacing)) + square(SURFEL_LINKS) / gi->links;
 
 	if (facts->lamps_moving > 0)
 		sum += square(SURFEL_TAPS) / gi->taps + square(SURFEL_LAG / gi->gathers);
@@ -94,20 +91,6 @@ void gi_plan_spread(enum scene_gi_method method, double *out_under, double *out_
 
 	*out_under = spread[method][0];
 	*out_over = spread[method][1];
-}
-
-double gi_plan_unthinned(const struct gi_facts *facts)
-{
-	double volume = facts->size_m[0] * facts->size_m[1] * facts->size_m[2], chord;
-	double lamps = facts->lamps_fixed + facts->lamps_moving;
-
-	if (!(facts->absorption_per_m > 0) || !(facts->emissive_triangles > 0 || facts->environment) ||
-	    !(facts->area_m2 > 0))
-		return 0;
-	/* mean free way in a room of that volume and surface; a metre lets 1 - sigma through */
-	chord = 4 * volume / facts->area_m2;
-	return fmin(1 / pow(fmax(0, 1 - facts->absorption_per_m), chord) - 1, UNTHINNED_MOST) /
-	       (lamps > 0 ? 2 : 1);
 }
 
 double gi_plan_error(const struct gi_facts *facts, const struct scene_gi *gi)

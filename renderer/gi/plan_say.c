@@ -31,16 +31,8 @@ void gi_plan_settings(char *text, size_t size, const struct scene_gi *gi)
 	}
 }
 
-static const char *fixed_light(const struct gi_facts *facts)
-{
-	if (!facts->environment)
-		return "emissive surfaces";
-	return facts->emissive_triangles > 0 ? "emissive surfaces and the environment" : "the environment";
-}
-
 static void put_reason(char *text, size_t size, const struct gi_facts *facts, const struct gi_plan *plan)
 {
-	bool lattice = plan->gi.method == SCENE_GI_LPV;
 	const char *still = facts->moving_geometry
 				    ? "things move, and only probes light what is not baked"
 				    : "nothing moves but lamps";
@@ -52,9 +44,6 @@ static void put_reason(char *text, size_t size, const struct gi_facts *facts, co
 	else if (facts->scattering_per_m > 0)
 		snprintf(text, size, "the air scatters, which only the lattice carries%s",
 			 facts->environment ? "; it leaves the environment out" : "");
-	else if (gi_plan_unthinned(facts) > 0)
-		snprintf(text, size, "%s; the air absorbs, which on surfels does not thin the light of %s",
-			 lattice ? "the lattice errs less here" : still, fixed_light(facts));
 	else
 		snprintf(text, size, "%s%s", still,
 			 facts->environment ? "; there is an environment, which the lattice does not know" : "");
