@@ -39,7 +39,12 @@ enum layout_target {
 	LAYOUT_TARGET_FULLSCREEN,
 };
 
-enum layout_cast { LAYOUT_UNICAST, LAYOUT_MULTICAST, LAYOUT_BROADCAST };
+enum layout_cast {
+	LAYOUT_UNICAST,
+	LAYOUT_MULTICAST,
+	LAYOUT_BROADCAST,
+	LAYOUT_AUTO, /* multicast while every node hears it, else unicast */
+};
 
 /* One projected wall. Corners as the person inside sees them. */
 struct layout_wall {

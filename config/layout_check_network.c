@@ -54,6 +54,7 @@ static void check_group(struct options_reader *reader, const struct layout_file 
 {
 	const struct layout_network *network = &file->network.network;
 	const char *key = "network.group";
+	const bool broadcast = network->cast == LAYOUT_BROADCAST;
 	struct address group;
 
 	if (network->cast == LAYOUT_UNICAST) {
@@ -66,21 +67,21 @@ static void check_group(struct options_reader *reader, const struct layout_file 
 		if (!options_given(file->network.at, "group"))
 			options_fault(reader, GR_DIAG_ERROR, file->at, key,
 				      "missing; cast = \"%s\" needs %s",
-				      network->cast == LAYOUT_MULTICAST ? "multicast" : "broadcast",
-				      network->cast == LAYOUT_MULTICAST ?
-					      "a multicast group such as \"239.192.71.1\"" :
-					      "the net's broadcast address such as \"192.0.2.255\"");
+				      broadcast ? "broadcast" :
+				      network->cast == LAYOUT_AUTO ? "auto" : "multicast",
+				      broadcast ? "the net's broadcast address such as \"192.0.2.255\"" :
+						  "a multicast group such as \"239.192.71.1\"");
 		return;
 	}
 	if (!address_parse(network->group, &group)) {
 		options_fault(reader, GR_DIAG_ERROR, file->at, key,
 			      "\"%.80s\" is not a numeric IPv4 or IPv6 address", network->group);
-	} else if (network->cast == LAYOUT_MULTICAST && !address_multicast(&group)) {
+	} else if (!broadcast && !address_multicast(&group)) {
 		options_fault(reader, GR_DIAG_ERROR, file->at, key,
 			      "%s is not a multicast group; those are 224.0.0.0 to 239.255.255.255 "
 			      "(239.192.0.0/14 for a site's own) and ff00::/8",
 			      network->group);
-	} else if (network->cast == LAYOUT_BROADCAST &&
+	} else if (broadcast &&
 		   (!group.v4 || address_multicast(&group) || address_unspecified(&group) ||
 		    /* the loopback net has one, too: a room on one machine */
 		    (address_loopback(&group) && strcmp(network->group, "127.255.255.255")))) {

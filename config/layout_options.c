@@ -10,7 +10,7 @@ static const char *const node_eyes_choices[] = { "mono", "quad-buffer", "side-by
 						 "top-bottom", NULL };
 static const char *const eye_choices[] = { "left", "right", NULL };
 static const char *const target_choices[] = { "headless", "window", "fullscreen", NULL };
-static const char *const cast_choices[] = { "unicast", "multicast", "broadcast", NULL };
+static const char *const cast_choices[] = { "unicast", "multicast", "broadcast", "auto", NULL };
 static const char *const swap_choices[] = { "auto", "message", "scheduled", "hardware", NULL };
 static const char *const orphan_choices[] = { "hold", "black", "test", NULL };
 static const char *const tracker_choices[] = { "sim", "replay", NULL };
@@ -85,7 +85,8 @@ static const struct option wall_options[] = {
 
 static const struct option network_options[] = {
 	{ .key = "cast", .type = OPTION_CHOICE, .choices = cast_choices, .standard = "unicast",
-	  AT(layout_file_network, network.cast), .help = "how one datagram reaches all nodes" },
+	  AT(layout_file_network, network.cast),
+	  .help = "how one datagram reaches all nodes; auto is multicast while all nodes hear it, else unicast" },
 	{ .key = "interface", .type = OPTION_STRING, AT(layout_file_network, network.interface),
 	  .help = "network interface of the room's own net, such as \"eth1\"; without it the system chooses" },
 	{ .key = "master_address", .type = OPTION_STRING, .standard = "127.0.0.1",
@@ -95,7 +96,7 @@ static const struct option network_options[] = {
 	  .standard = "27100", AT(layout_file_network, network.master_port),
 	  .help = "UDP port of grotto-master" },
 	{ .key = "group", .type = OPTION_STRING, AT(layout_file_network, network.group),
-	  .help = "multicast group or broadcast address; not for unicast" },
+	  .help = "multicast group (for auto, too) or broadcast address; not for unicast" },
 	{ .key = "group_port", .type = OPTION_PORT, .min = 1024, .max = 65535,
 	  .standard = "27101", AT(layout_file_network, network.group_port),
 	  .help = "UDP port of the group" },

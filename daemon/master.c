@@ -41,6 +41,9 @@ static uint64_t barrier_nodes(const struct master *m)
 	return bits;
 }
 
+_Static_assert(NET_TO_ALL == FDP_TO_ALL && NET_TO_GROUP == FDP_TO_GROUP,
+	       "what the protocol says goes to the socket as it is");
+
 static void send_datagram(void *ctx, int to, const uint8_t *bytes, size_t len)
 {
 	struct master *m = ctx;
@@ -80,6 +83,23 @@ static void node_mismatch(struct master *m, const struct fdp_master_event *event
 			 node_name(m, event->node), event->frame, event->ours, event->theirs, times);
 }
 
+static void note_way(struct master *m, const struct fdp_master_event *event, int64_t now_ns)
+{
+	const struct layout_network *network = &m->params.layout->network;
+	uint64_t times;
+
+	m->deaf = event->way == FDP_WAY_GROUP ? -1 : event->node;
+	if (!gr_log_limit(&m->way_limit, now_ns, &times))
+		return;
+	if (event->way == FDP_WAY_GROUP)
+		gr_notice("all nodes hear %s: frames go by multicast", network->group);
+	else
+		gr_warning("node %s does not hear %s: frames go to each node by itself (a switch that "
+			   "snoops IGMP needs a querier; \"ip maddr\" on the node shows whether it has joined; "
+			   "%" PRIu64 " changes since the last line)", node_name(m, event->node),
+			   network->group, times);
+}
+
 static void on_event(void *ctx, const struct fdp_master_event *event)
 {
 	struct master *m = ctx;
@@ -117,6 +137,7 @@ static void on_event(void *ctx, const struct fdp_master_event *event)
 			 node_name(m, event->node), m->params.layout->rates.evict_frames);
 		break;
 	case FDP_MASTER_MISMATCH: node_mismatch(m, event, now_ns); break;
+	case FDP_MASTER_WAY: note_way(m, event, now_ns); break;
 	case FDP_MASTER_SWAP:
 		m->swap_ns = now_ns;
 		recorder_swap(m->recorder, now_ns, event->frame, event->swap_ns);
@@ -425,7 +446,8 @@ static int create_protocol(struct master *m)
 		.datagram_max = net_datagram_max(&layout->network),
 		.deadline_ns = layout->rates.barrier_deadline_ns,
 		.evict_frames = (unsigned)layout->rates.evict_frames,
-		.multicast = layout->network.cast != LAYOUT_UNICAST,
+		.multicast = net_has_group(m->net),
+		.probe_group = net_has_group(m->net) && layout->network.cast == LAYOUT_AUTO,
 		.swap = swap_of(layout->swap.mode),
 		.swap_lead_most_ns = llrint((double)layout->swap.lead_most * (double)m->period_ns),
 		.share_bytes = m->params.scene->gi.share == SCENE_SHARE_CLUSTER ? FDP_SHARE_MAX : 0,
@@ -458,6 +480,7 @@ int master_create(struct master **out, struct loop *loop, struct net *net,
 	m->net = net;
 	m->trackers = trackers;
 	trackers->tap = (struct trackers_tap){ on_sample, m };
+	m->deaf = -1;
 	m->period_ns = llrint(1e9 / (double)params->layout->rates.frame_hz);
 	do
 		randombytes_buf(&m->session, sizeof m->session);

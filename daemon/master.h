@@ -66,8 +66,9 @@ struct master {
 	int tick_timer, frame_timer, second_timer;
 	uint64_t late, evicted, refused, joined;
 	uint64_t logged_frame;
+	int deaf; /* node that keeps the room from multicast (cast = "auto"); -1: none */
 	struct dropped bad;
-	struct gr_log_limit refused_limit[FDP_MAX_NODES], range_limit, late_limit;
+	struct gr_log_limit refused_limit[FDP_MAX_NODES], range_limit, late_limit, way_limit;
 	struct gr_log_limit mismatch_limit, send_limit;
 	uint64_t seen_send_failed;
 };

@@ -89,6 +89,19 @@ static void write_node(struct json *json, const struct master *m, size_t i, int6
 	json_close(json, '}');
 }
 
+static void write_way(struct json *json, const struct master *m)
+{
+	const enum layout_cast cast = m->params.layout->network.cast;
+	const bool group = fdp_master_way(m->fdp) == FDP_WAY_GROUP;
+
+	json_string(json, "way", !group			    ? "unicast" :
+				 cast == LAYOUT_BROADCAST ? "broadcast" : "multicast");
+	if (cast == LAYOUT_AUTO && m->deaf >= 0)
+		json_string(json, "deaf", m->params.layout->nodes[m->deaf].name);
+	else if (cast == LAYOUT_AUTO && !net_has_group(m->net))
+		json_string(json, "deaf", "master");
+}
+
 static void write_wire(struct json *json, const struct master *m)
 {
 	struct fdp_counters c;
@@ -104,6 +117,7 @@ static void write_wire(struct json *json, const struct master *m)
 	json_u64(json, "repairs", c.repairs);
 	json_u64(json, "packed", c.packed);
 	json_u64(json, "send_failed", net.send_failed);
+	write_way(json, m);
 	json_open(json, "bad", '{');
 	json_u64(json, "short", c.bad_short);
 	json_u64(json, "version", c.bad_version);

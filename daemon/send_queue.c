@@ -93,7 +93,8 @@ void send_queue_add(struct send_queue *queue, int way, const struct net_address 
 
 /*
  * From the first, the datagrams that may follow it in one buffer: to the same
- * address, all of the first one's length but the last, which may be shorter.
+ * address, as long as a datagram can be, the last perhaps shorter. Short ones
+ * stay alone: what is sent twice against loss may not be lost as one.
  */
 static unsigned find_parts(const struct send_queue *q, unsigned first, const bool *taken,
 			   unsigned parts[GSO_PARTS_MAX])
@@ -102,14 +103,14 @@ static unsigned find_parts(const struct send_queue *q, unsigned first, const boo
 	unsigned n = 0;
 
 	parts[n++] = first;
-	if (!q->gso || q->way[first] == SEND_ALONE || !q->len[first])
+	if (!q->gso || q->way[first] == SEND_ALONE || q->len[first] < q->datagram_max)
 		return n;
 	for (unsigned i = first + 1; i < q->count && n < GSO_PARTS_MAX; i++) {
 		if (taken[i] || q->way[i] != q->way[first])
 			continue;
 		total += q->len[i];
 		/* What does not fit ends the buffer: nothing of one way overtakes. */
-		if (q->len[i] > q->len[first] || !q->len[i] || total > GSO_BYTES_MAX)
+		if (!q->len[i] || total > GSO_BYTES_MAX)
 			break;
 		parts[n++] = i;
 		if (q->len[i] < q->len[first])

@@ -1,6 +1,6 @@
 /*
  * Datagrams that wait to be sent. They leave in one system call (sendmmsg), and
- * those to one address as one buffer that the kernel cuts up (UDP GSO, Linux
+ * fragments to one address as one buffer that the kernel cuts up (UDP GSO, Linux
  * 4.18), where it can: what a datagram costs on its way down is then paid once
  * for up to 64. Datagrams to one address keep their order.
  *

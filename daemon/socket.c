@@ -266,6 +266,19 @@ static int net_new(struct net **out, const struct layout_network *network)
 	return GR_OK;
 }
 
+/* With cast = "auto" a group that cannot be opened is done without; the log has said why. */
+static int without_group(struct net *net, const struct layout_network *network, int result)
+{
+	if (result != GR_ERR_IO || network->cast != LAYOUT_AUTO)
+		return result;
+	gr_warning("goes on without multicast (network.cast = \"auto\")");
+	net->has_group = false;
+	if (net->group_fd >= 0)
+		close(net->group_fd);
+	net->group_fd = -1;
+	return GR_OK;
+}
+
 int net_open_master(struct net **out, const struct layout *layout)
 {
 	const struct layout_network *network = &layout->network;
@@ -281,7 +294,7 @@ int net_open_master(struct net **out, const struct layout *layout)
 	if (r == GR_OK && ((*out)->fd = open_bound(&own, false)) < 0)
 		r = GR_ERR_IO;
 	if (r == GR_OK && (*out)->has_group)
-		r = set_group_out(*out, network);
+		r = without_group(*out, network, set_group_out(*out, network));
 	if (r < 0)
 		net_close(out);
 	return r;
@@ -302,7 +315,7 @@ int net_open_node(struct net **out, const struct layout *layout, size_t index)
 	if (r == GR_OK && ((*out)->fd = open_bound(&own, false)) < 0)
 		r = GR_ERR_IO;
 	if (r == GR_OK && (*out)->has_group)
-		r = join_group(*out, network);
+		r = without_group(*out, network, join_group(*out, network));
 	if (r < 0)
 		net_close(out);
 	return r;
@@ -329,6 +342,11 @@ int net_fds(const struct net *net, int fds[2])
 	fds[0] = net->fd;
 	fds[1] = net->group_fd;
 	return net->group_fd >= 0 ? 2 : 1;
+}
+
+bool net_has_group(const struct net *net)
+{
+	return net->has_group;
 }
 
 void net_stats(const struct net *net, struct net_stats *out)
@@ -372,9 +390,9 @@ void net_send(struct net *net, int to, const uint8_t *bytes, size_t len)
 		return;
 	if (to >= 0 && (size_t)to < net->peer_count) {
 		queue(net, to, &net->peers[to], bytes, len);
-	} else if (to < 0 && net->has_group) {
+	} else if (to == NET_TO_GROUP && net->has_group) {
 		queue(net, NET_GROUP, &net->group, bytes, len);
-	} else if (to < 0) {
+	} else if (to == NET_TO_ALL) {
 		for (size_t i = 0; i < net->peer_count; i++)
 			queue(net, (int)i, &net->peers[i], bytes, len);
 	}

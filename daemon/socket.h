@@ -16,6 +16,8 @@
 #include "daemon/send_queue.h"
 
 #define NET_ADDRESS_TEXT 64
+#define NET_TO_ALL (-1)
+#define NET_TO_GROUP (-2)
 
 /* Numeric IPv4 or IPv6 (with %scope); GR_ERR_FORMAT otherwise. */
 int net_address_parse(const char *text, uint16_t port, struct net_address *out);
@@ -44,9 +46,11 @@ void net_close(struct net **net);
 int net_fds(const struct net *net, int fds[2]);
 void net_stats(const struct net *net, struct net_stats *out);
 
+/* Whether there is a group: as the layout says, and with cast = "auto" where it can be opened. */
+bool net_has_group(const struct net *net);
 /*
- * Master: queues a datagram to node `to`, or with -1 to all nodes: once to
- * the group, or to each where there is none.
+ * Master: queues a datagram to node `to`, to each node (NET_TO_ALL), or once to
+ * the group (NET_TO_GROUP; nothing where there is none).
  * Node: `to` is 0, its master. net_flush sends the queue.
  */
 void net_send(struct net *net, int to, const uint8_t *bytes, size_t len);

@@ -12,6 +12,7 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/master_refuse.c \
 	protocol/master_repair.c \
 	protocol/master_share.c \
+	protocol/master_way.c \
 	protocol/message.c protocol/message.h \
 	protocol/node.c protocol/node.h protocol/node_private.h \
 	protocol/node_clock.c \

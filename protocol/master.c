@@ -51,7 +51,8 @@ static int check_params(const struct fdp_master_params *p, const struct fdp_mast
 		return GR_ERR_RANGE;
 	if (!p->session || !p->node_count || p->node_count > FDP_MAX_NODES || !p->node_names ||
 	    p->datagram_max < FDP_DATAGRAM_MIN || p->datagram_max > FDP_DATAGRAM_MAX ||
-	    p->deadline_ns <= 0 || p->probe_ns < 0 || p->swap_lead_most_ns < 0 || !p->evict_frames || !ops->send || !ops->event)
+	    (p->probe_group && !p->multicast) || p->deadline_ns <= 0 || p->probe_ns < 0 ||
+	    p->swap_lead_most_ns < 0 || !p->evict_frames || !ops->send || !ops->event)
 		return GR_ERR_RANGE;
 	for (size_t i = 0; i < p->node_count; i++)
 		if (!p->node_names[i] || !p->node_names[i][0] ||
@@ -95,6 +96,7 @@ int fdp_master_create(struct fdp_master **out, const struct fdp_master_params *p
 		m->params.probe_ns = default_probe(params->deadline_ns);
 	m->ops = *ops;
 	m->answers = -1;
+	m->group = params->multicast && !params->probe_group;
 	randombytes_buf(m->nonce, sizeof m->nonce);
 	fdp_key_to_nodes(m->params.key, params->session, m->nonce, m->key_to_nodes);
 	m->gate = (struct fdp_gate){
@@ -112,7 +114,7 @@ int fdp_master_create(struct fdp_master **out, const struct fdp_master_params *p
 		.sender = FDP_SENDER_MASTER,
 		.session = params->session,
 		.datagram_max = params->datagram_max,
-		.fan_out = params->multicast ? 1 : params->node_count,
+		.fan_out = params->node_count,
 		.counters = &m->counters,
 		.send = to_caller,
 		.ctx = m,
@@ -172,8 +174,8 @@ void fdp_master_announce(struct fdp_master *m, int to, enum fdp_kind kind)
 
 void fdp_master_announce_to(struct fdp_master *m, uint64_t nodes, enum fdp_kind kind)
 {
-	if (m->params.multicast && nodes & (nodes - 1)) {
-		fdp_master_announce(m, FDP_TO_ALL, kind);
+	if (m->group && nodes & (nodes - 1)) {
+		fdp_master_announce(m, FDP_TO_GROUP, kind);
 		return;
 	}
 	for (size_t i = 0; i < m->params.node_count; i++)
@@ -226,8 +228,8 @@ static void send_delta(struct fdp_master *m, int to)
 
 static void send_delta_to(struct fdp_master *m, uint64_t live)
 {
-	if (m->params.multicast) {
-		send_delta(m, FDP_TO_ALL);
+	if (m->group) {
+		send_delta(m, FDP_TO_GROUP);
 		return;
 	}
 	for (size_t i = 0; i < m->params.node_count; i++)
@@ -283,6 +285,7 @@ int fdp_master_begin(struct fdp_master *m, const struct param_state *state, uint
 	fdp_barrier_start(&m->barrier, frame, live, now_ns, m->params.deadline_ns);
 	m->probe_at = now_ns + m->params.probe_ns;
 	m->probes = 0;
+	fdp_master_choose_way(m, live, now_ns);
 	fdp_master_begin_repairs(m);
 	fdp_master_share_begin(m, live);
 	if (live) {
@@ -360,31 +363,15 @@ static void tend_joiners(struct fdp_master *m, int64_t now_ns)
 	refresh_snapshots(m, now_ns);
 }
 
-/* How nodes that wait, or sit in an older session, find us: as long as somebody is missing. */
-static void send_beacon(struct fdp_master *m)
-{
-	const uint64_t present = fdp_master_mask(m, fdp_peer_present);
-
-	if (count_bits(present) == m->params.node_count)
-		return;
-	for (size_t i = 0; i < m->params.node_count; i++) {
-		if (!m->params.multicast && present & BIT(i))
-			continue;
-		fdp_outbox_send(&m->out, m->params.multicast ? FDP_TO_ALL : (int)i, FDP_BEACON,
-				fdp_beacon_encode(fdp_outbox_body(&m->out), FDP_BODY_MAX));
-		if (m->params.multicast)
-			break;
-	}
-}
-
 void fdp_master_tick(struct fdp_master *m, int64_t now_ns)
 {
 	m->now_ns = now_ns;
 	tend_joiners(m, now_ns);
 	if (now_ns >= m->keepalive_at) {
 		m->keepalive_at = now_ns + FDP_KEEPALIVE_NS;
-		fdp_master_announce(m, FDP_TO_ALL, FDP_PROBE);
-		send_beacon(m);
+		fdp_master_announce(m, fdp_master_all(m), FDP_PROBE);
+		fdp_master_probe_group(m);
+		fdp_master_send_beacon(m);
 	}
 	if (!m->underway)
 		return;
@@ -427,7 +414,7 @@ void fdp_master_leave(struct fdp_master *m, int64_t now_ns)
 	(void)now_ns;
 	/* Nobody answers to it: twice, so that one loss does not cost the nodes their time-out. */
 	for (int i = 0; i < 2; i++)
-		fdp_outbox_send(&m->out, FDP_TO_ALL, FDP_LEAVE,
+		fdp_outbox_send(&m->out, fdp_master_all(m), FDP_LEAVE,
 				fdp_leave_encode(m->frame, fdp_outbox_body(&m->out), FDP_BODY_MAX));
 }
 

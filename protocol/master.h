@@ -24,7 +24,8 @@
 #include <stdint.h>
 
 #define FDP_MAX_NODES 64
-#define FDP_TO_ALL (-1)
+#define FDP_TO_ALL (-1)   /* each node by itself */
+#define FDP_TO_GROUP (-2) /* once, to the group that all are in */
 #define FDP_REASON_MAX 224
 #define FDP_ITEMS_MAX 166 /* parts of layout and scene together, see fdp_join */
 #define FDP_SHARE_MAX (4u << 20) /* bytes of the light that nodes share out, all slices together */
@@ -46,7 +47,11 @@ enum fdp_master_event_kind {
 	FDP_MASTER_EVICTED,  /* node missed evict_frames in a row */
 	FDP_MASTER_MISMATCH, /* node's state hash differs: ours, theirs; it gets a snapshot */
 	FDP_MASTER_SWAP,     /* SWAP(frame) was sent */
+	FDP_MASTER_WAY,      /* what is for all goes `way`; node: the first that does not hear the group */
 };
+
+/* How what is for all goes. */
+enum fdp_way { FDP_WAY_NONE, FDP_WAY_EACH, FDP_WAY_GROUP };
 
 struct fdp_master_event {
 	enum fdp_master_event_kind kind;
@@ -55,6 +60,7 @@ struct fdp_master_event {
 	int64_t swap_ns; /* FDP_MASTER_SWAP: when it is to be shown; 0: when told */
 	uint64_t ours, theirs;
 	const char *reason; /* valid during the call */
+	enum fdp_way way;
 };
 
 /*
@@ -87,7 +93,8 @@ struct fdp_master_params {
 	int64_t deadline_ns; /* of the barrier, from fdp_master_begin */
 	int64_t probe_ns;    /* ask who has not acknowledged after this; 0: deadline/8, 5 ms at most */
 	unsigned evict_frames;
-	bool multicast; /* FDP_TO_ALL is one send on the wire, not one a node */
+	bool multicast;   /* there is a group: one send on the wire for all */
+	bool probe_group; /* but it is used only while every live node hears it */
 	enum fdp_swap swap;
 	int64_t swap_lead_most_ns; /* a swap's time is at most so far ahead of its SWAP */
 	/* Room for the light that nodes share out, all slices together; 0: none is, slices are bad. At most FDP_SHARE_MAX. */
@@ -98,7 +105,8 @@ struct fdp_report;
 struct fdp_master_ops {
 	/*
 	 * Neither may call back into the master.
-	 * One datagram to node `to`, or to all nodes for FDP_TO_ALL. Where the
+	 * One datagram to node `to`, or for FDP_TO_ALL to each of them, or to the group
+	 * (FDP_TO_GROUP, with params.multicast alone). Where the
 	 * node's address is not the layout's, the caller has the last source
 	 * address it heard a fresh datagram from (fdp_master_receive). What is sent
 	 * to node fdp_master_answers() goes to where the datagram came from.
@@ -150,6 +158,7 @@ struct fdp_peer_status {
 	uint32_t path_ns;          /* the last SWAP's way, until the node had it in hand; 0: not known */
 	uint32_t swaps_late;       /* SWAPs that it had in hand after their time */
 	uint64_t swapped_frame;
+	bool hears_group;          /* as it says, of late */
 	uint32_t render_us;        /* GPU and CPU time the node says it took */
 	uint64_t slices, slices_late, slice_bytes; /* of the light, from it, whole; after SWAP */
 	uint64_t plan;                             /* of its light, see struct fdp_join */
@@ -208,6 +217,7 @@ void fdp_master_peer(const struct fdp_master *master, size_t node, struct fdp_pe
 void fdp_master_clock(const struct fdp_master *master, size_t node, int64_t now_ns,
 		      struct fdp_clock_estimate *out);
 void fdp_master_counters(const struct fdp_master *master, struct fdp_counters *out);
+enum fdp_way fdp_master_way(const struct fdp_master *master);
 /* Also among how many nodes the light is divided in this frame, 0: it is not. */
 unsigned fdp_master_share(const struct fdp_master *master, struct fdp_share_counts *out);
 

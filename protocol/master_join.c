@@ -97,9 +97,11 @@ static void admit(struct fdp_master *m, unsigned node, const struct fdp_header *
 	fdp_master_clock_forget(peer);
 	peer->synced = peer->wants_snapshot = false;
 	peer->missed_row = 0;
+	peer->joined_ns = now_ns;
 	peer->mismatch_frame = 0;
 	peer->refused[0] = 0;
 	peer->state = fdp_peer_next(peer->state, FDP_PEER_JOINS);
+	fdp_master_probe_group(m);
 	fdp_master_send_snapshot(m, node, now_ns);
 }
 

@@ -1,7 +1,8 @@
 /*
  * Inside the master's half of FDP: master.c has the frame, master_receive.c
- * what arrives, master_clock.c time, master_join.c who may take part and master_refuse.c why not,
- * master_repair.c what is sent again, master_share.c the light that the nodes share out.
+ * what arrives, master_clock.c time, master_join.c who may take part and
+ * master_refuse.c why not, master_repair.c what is sent again, master_way.c the
+ * way to all, master_share.c the light that the nodes share out.
  */
 #ifndef GROTTO_PROTOCOL_MASTER_PRIVATE_H
 #define GROTTO_PROTOCOL_MASTER_PRIVATE_H
@@ -27,6 +28,7 @@
 #define FDP_LOSS_EVIDENCE 32
 #define FDP_LOSS_TWICE 64
 #define FDP_LOSS_MAX 256
+#define FDP_GROUP_PATIENCE_NS INT64_C(1000000000) /* for a node to hear the group before it is named */
 #define FDP_SAID_FRAMES 64 /* SWAP says which slices there are until so long after the last change */
 
 #define FDP_PATHS 64 /* ways of a SWAP that its lead is measured by */
@@ -42,6 +44,7 @@ struct fdp_peer {
 	uint64_t snapshot_from;  /* frame in which it was found to: what it held before is no base */
 	uint64_t mismatch_frame; /* counted once a frame */
 	unsigned missed_row;
+	int64_t joined_ns;
 	int64_t snapshot_ns; /* last sent */
 	int64_t told_ns;     /* a dead one was told so */
 	int64_t refused_ns;
@@ -85,6 +88,9 @@ struct fdp_master {
 	unsigned loss;
 	int64_t probe_at, keepalive_at;
 	unsigned probes; /* in this frame */
+
+	bool group;            /* what is for all goes to the group */
+	enum fdp_way told_way; /* the last FDP_MASTER_WAY */
 
 	struct fdp_share share;
 	uint64_t shared;         /* nodes among whom it is divided */
@@ -141,6 +147,16 @@ void fdp_master_note_path(struct fdp_peer *peer, uint32_t path_ns);
 void fdp_master_say_time(struct fdp_master *m, int to, struct fdp_announce *a);
 /* When these nodes are to swap, if they are told now; 0: at once. */
 int64_t fdp_master_swap_time(const struct fdp_master *m, uint64_t live, int64_t now_ns);
+/* A frame begins with these nodes: to the group or to each. */
+void fdp_master_choose_way(struct fdp_master *m, uint64_t live, int64_t now_ns);
+/* So that nodes can say whether they hear a group that is not in use. */
+void fdp_master_probe_group(struct fdp_master *m);
+void fdp_master_send_beacon(struct fdp_master *m);
+
+static inline int fdp_master_all(const struct fdp_master *m)
+{
+	return m->group ? FDP_TO_GROUP : FDP_TO_ALL;
+}
 
 static inline bool fdp_master_twice(const struct fdp_master *m)
 {

@@ -174,6 +174,7 @@ static enum fdp_verdict take(struct fdp_master *m, const struct fdp_header *h, c
 		return FDP_BAD_REPLAY;
 	*fresh = true;
 	peer->status.last_heard_ns = now_ns;
+	peer->status.hears_group = h->group;
 	if (!fdp_peer_present(peer->state)) {
 		if (h->kind != FDP_LEAVE)
 			tell_stranger(m, h->sender, now_ns);

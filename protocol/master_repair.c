@@ -1,7 +1,7 @@
 /*
  * What is sent again. On a multicast wire a repair goes to all, and answers
- * everybody who asks within a short window; on a unicast wire it goes to who
- * asked. Either way a frame has a budget, so that no amount of asking can
+ * everybody who asks within a short window; who asks again, or where the wire
+ * is not multicast, gets it alone. Either way a frame has a budget, so that no amount of asking can
  * fill the wire: what is left out is healed by the next frame's delta.
  */
 #include "protocol/master_private.h"
@@ -19,7 +19,7 @@ void fdp_master_begin_repairs(struct fdp_master *m)
 {
 	const size_t message = FDP_STATE_HEAD_BYTES + param_delta_max();
 	const size_t count = fdp_fragment_count(message, m->out.datagram_max);
-	const uint64_t readers = m->params.multicast ? 4 : m->params.node_count * 4;
+	const uint64_t readers = m->group ? 4 : m->params.node_count * 4;
 
 	m->repair_budget = (8 + readers) * (message + count * FDP_HEADER_BYTES);
 	for (size_t i = 0; i < count; i++)
@@ -64,20 +64,22 @@ static bool spend(struct fdp_master *m, const struct fdp_letter *letter, unsigne
 static void repair(struct fdp_master *m, unsigned node, const struct fdp_letter *letter,
 		   unsigned index, int64_t now_ns)
 {
-	const bool all = letter == &m->delta && m->params.multicast;
+	bool all = letter == &m->delta && m->group;
 
-	if (all && m->repaired_ns[index] != INT64_MIN &&
-	    now_ns - m->repaired_ns[index] < m->params.probe_ns / 4)
-		return;
+	if (all && m->repaired_ns[index] != INT64_MIN) {
+		if (now_ns - m->repaired_ns[index] < m->params.probe_ns / 4)
+			return;
+		all = false; /* perhaps this node does not hear the group at all */
+	}
 	if (!spend(m, letter, index))
 		return;
 	if (all)
 		m->repaired_ns[index] = now_ns;
 	m->counters.repairs++;
-	fdp_outbox_fragment(&m->out, all ? FDP_TO_ALL : (int)node, letter, index);
+	fdp_outbox_fragment(&m->out, all ? FDP_TO_GROUP : (int)node, letter, index);
 	/* To one node the NACK's own second copy brings it twice. */
 	if (all && fdp_master_twice(m) && spend(m, letter, index))
-		fdp_outbox_fragment(&m->out, FDP_TO_ALL, letter, index);
+		fdp_outbox_fragment(&m->out, FDP_TO_GROUP, letter, index);
 }
 
 void fdp_master_on_nack(struct fdp_master *m, unsigned node, const struct fdp_nack *nack,

@@ -69,9 +69,9 @@ static void pass_on(struct fdp_master *m, unsigned from, const uint8_t *body, si
 		if (!(to & BIT(i)))
 			continue;
 		memcpy(fdp_outbox_body(&m->out), body, len);
-		fdp_outbox_send(&m->out, m->params.multicast ? FDP_TO_ALL : (int)i, FDP_SLICE, len);
+		fdp_outbox_send(&m->out, m->group ? FDP_TO_GROUP : (int)i, FDP_SLICE, len);
 		m->share.counts.bytes_sent += len - FDP_PIECE_HEAD;
-		if (m->params.multicast)
+		if (m->group)
 			break;
 	}
 }

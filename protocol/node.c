@@ -182,6 +182,8 @@ static void enter_session(struct fdp_node *n, uint64_t session, const struct fdp
 			  w->challenge, n->key_to_master);
 	n->gate.keyed = 1;
 	n->heard_ns = now_ns;
+	n->group_heard_ns = 0;
+	n->out.hears_group = false;
 	fdp_node_frame_reset(n);
 }
 
@@ -255,6 +257,9 @@ static enum fdp_verdict in_session(struct fdp_node *n, const struct fdp_header *
 	if (!fdp_replay_take(&n->window, h->sequence))
 		return FDP_BAD_REPLAY;
 	n->heard_ns = now_ns;
+	if (h->group)
+		n->group_heard_ns = now_ns;
+	n->out.hears_group = n->group_heard_ns && now_ns - n->group_heard_ns < FDP_GROUP_FRESH_NS;
 	switch (h->kind) {
 	case FDP_SNAPSHOT:
 	case FDP_DELTA:

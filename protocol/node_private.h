@@ -15,6 +15,7 @@
 
 #define FDP_JOIN_DEFAULT_NS INT64_C(200000000)
 #define FDP_SILENCE_DEFAULT_NS INT64_C(2000000000)
+#define FDP_GROUP_FRESH_NS INT64_C(1000000000) /* four of the master's PROBEs */
 
 /* The frame that the daemon is told of. */
 struct fdp_node_frame {
@@ -47,6 +48,7 @@ struct fdp_node {
 	bool asked;
 	int64_t hinted_ns; /* JOIN last sent because of another session's beacon */
 	int64_t heard_ns; /* master, in this session */
+	int64_t group_heard_ns; /* by the group; 0: not in this session */
 	int64_t retry_ns; /* the master's probe interval */
 	char refused[FDP_REASON_MAX];
 	int64_t refused_ns;

@@ -27,6 +27,7 @@ struct fdp_outbox {
 	uint64_t sequence; /* of the last datagram */
 	uint64_t message;  /* last number given */
 	size_t datagram_max;
+	bool hears_group; /* a node's to say */
 	size_t fan_out; /* datagrams on the wire for one to FDP_TO_ALL */
 	struct fdp_counters *counters;
 	void (*send)(void *ctx, int to, const uint8_t *bytes, size_t len);

@@ -12,6 +12,7 @@
 static const uint8_t magic[4] = { 'G', 'F', 'D', 'P' };
 
 #define FLAG_PACKED 1u
+#define FLAG_GROUP 2u
 /* Only states are long enough to be cut or packed. */
 #define LONG_KINDS (1u << FDP_SNAPSHOT | 1u << FDP_DELTA)
 
@@ -93,7 +94,7 @@ void fdp_wire_seal(const struct fdp_header *header, const uint8_t key[FDP_KEY_BY
 	gr_write_bytes(&w, magic, sizeof magic);
 	gr_write_u8(&w, header->version);
 	gr_write_u8(&w, (uint8_t)header->kind);
-	gr_write_u8(&w, header->packed ? FLAG_PACKED : 0);
+	gr_write_u8(&w, (uint8_t)((header->packed ? FLAG_PACKED : 0) | (header->group ? FLAG_GROUP : 0)));
 	gr_write_u8(&w, header->to);
 	gr_write_u16(&w, header->sender);
 	gr_write_u16(&w, header->payload_len);
@@ -116,6 +117,7 @@ static bool read_fields(struct gr_reader *r, struct fdp_header *out)
 	flags = gr_read_u8(r);
 	out->to = gr_read_u8(r);
 	out->packed = flags & FLAG_PACKED;
+	out->group = flags & FLAG_GROUP;
 	out->sender = gr_read_u16(r);
 	out->payload_len = gr_read_u16(r);
 	out->index = gr_read_u16(r);
@@ -125,7 +127,7 @@ static bool read_fields(struct gr_reader *r, struct fdp_header *out)
 	out->message = gr_read_u64(r);
 	out->message_len = gr_read_u32(r);
 	out->plain_len = gr_read_u32(r);
-	return r->ok && !(flags & ~FLAG_PACKED);
+	return r->ok && !(flags & ~(FLAG_PACKED | FLAG_GROUP));
 }
 
 static bool lengths_right(const struct fdp_header *h, size_t len)
@@ -176,7 +178,7 @@ enum fdp_verdict fdp_gate_open(const struct fdp_gate *gate, const uint8_t *bytes
 		return FDP_BAD_SESSION;
 	if (!fdp_wire_authentic(key, bytes, len))
 		return FDP_BAD_AUTH;
-	if (!fields || !lengths_right(out, len) || (out->to && bit & FDP_HANDSHAKE))
+	if (!fields || !lengths_right(out, len) || (out->to && (out->group || bit & FDP_HANDSHAKE)))
 		return FDP_BAD_FORMAT;
 	/* What was for one node is not good at another: each has numbers that only it has seen. */
 	return !out->to || out->to == gate->self ? FDP_GOOD : FDP_BAD_REPLAY;

@@ -14,6 +14,7 @@ PROTOCOL_TESTS = \
 	tests/unit/test_share \
 	tests/unit/test_trust \
 	tests/unit/test_swap \
+	tests/unit/test_way \
 	tests/unit/test_wire
 check_PROGRAMS += $(PROTOCOL_TESTS)
 TESTS += $(PROTOCOL_TESTS)
@@ -57,6 +58,10 @@ tests_unit_test_swap_SOURCES = tests/unit/test_swap.c \
 	tests/unit/cluster_sim.c tests/unit/cluster_sim.h tests/unit/unit.h
 tests_unit_test_swap_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_swap_LDADD = $(PROTOCOL_TEST_LDADD)
+tests_unit_test_way_SOURCES = tests/unit/test_way.c \
+	tests/unit/cluster_sim.c tests/unit/cluster_sim.h tests/unit/unit.h
+tests_unit_test_way_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_unit_test_way_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_wire_SOURCES = tests/unit/test_wire.c tests/unit/unit.h
 tests_unit_test_wire_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_wire_LDADD = $(PROTOCOL_TEST_LDADD)

@@ -61,8 +61,8 @@ check_PROGRAMS += tests/loopback/picture
 tests_loopback_picture_SOURCES = tests/loopback/picture.c
 tests_loopback_picture_CFLAGS = $(AM_CFLAGS)
 tests_loopback_picture_LDADD = $(RENDERER_LIBS)
-dist_check_SCRIPTS += tests/loopback/demo.sh tests/loopback/netns.sh \
+dist_check_SCRIPTS += tests/loopback/demo.sh tests/loopback/netns.sh tests/loopback/way.sh \
 	tests/loopback/render.sh tests/loopback/share.sh tests/loopback/window.sh
-TESTS += tests/loopback/demo.sh tests/loopback/netns.sh \
+TESTS += tests/loopback/demo.sh tests/loopback/netns.sh tests/loopback/way.sh \
 	tests/loopback/render.sh tests/loopback/share.sh tests/loopback/window.sh
 EXTRA_DIST += tests/loopback/lib.sh tests/data/halves.cave tests/data/loop.scene tests/data/shared.scene

@@ -49,7 +49,7 @@ static void fuzz_queue(struct fuzz_pair *p, int to, const uint8_t *bytes, size_t
 static void fuzz_master_send(void *ctx, int to, const uint8_t *bytes, size_t len)
 {
 	for (int i = 0; i < 2; i++)
-		if (to == FDP_TO_ALL || to == i)
+		if (to < 0 || to == i)
 			fuzz_queue(ctx, i, bytes, len);
 }
 

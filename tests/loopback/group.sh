@@ -1,5 +1,6 @@
 #!/bin/sh
-# The same room with a key, over multicast and over broadcast: one datagram for all nodes.
+# The same room with a key, over multicast, over broadcast, and over what works of multicast and
+# unicast: one datagram for all nodes.
 . "${srcdir:-.}/tests/loopback/room.sh"
 make_room "32, 24" 20000.0
 need_gl
@@ -7,7 +8,7 @@ nodes="front left"
 
 (umask 027 && od -An -tx1 -N32 /dev/urandom | tr -d ' \n' > "$dir/room.key" && echo >> "$dir/room.key")
 cp "$dir/room.cave" "$dir/unicast.cave"
-for cast in "multicast 239.255.71.5" "broadcast 127.255.255.255"; do
+for cast in "multicast 239.255.71.5" "broadcast 127.255.255.255" "auto 239.255.71.5"; do
 	set -- $cast
 	sed -e "s|^network = {|network = { cast = \"$1\"; group = \"$2\"; group_port = $((port + 5)); interface = \"lo\"; key_file = \"room.key\";|" \
 		"$dir/unicast.cave" > "$dir/room.cave"
@@ -19,8 +20,12 @@ for cast in "multicast 239.255.71.5" "broadcast 127.255.255.255"; do
 		[ "$(node_field "$dir/master.json" $n swapped)" -eq 30 ] || fail "$n did not swap 30 frames ($1)"
 		[ "$(node_field "$dir/master.json" $n mismatches)" -eq 0 ] || fail "$n held another state ($1)"
 	done
+	way=$1
+	[ "$1" = auto ] && way=multicast
+	grep -q "\"way\":\"$way\"" "$dir/master.json" || fail "the report does not say $way"
 	echo "ok: $1"
 done
+says master "all nodes hear 239.255.71.5: frames go by multicast" || fail "auto does not say how"
 
 # A node with another key: neither taken nor told anything, and both sides say so.
 tr '0-9a-f' '1-9a-f0' < "$dir/room.key" > "$dir/other.key"

@@ -37,6 +37,8 @@ make_net() {
 		ip -n "$id-$ns" link add eth0 type veth peer name "p$ns" netns "$id-hub" || return 1
 		ip -n "$id-hub" link set "p$ns" master br0 up || return 1
 		ip -n "$id-$ns" address add "10.77.0.$address/24" dev eth0
+		# As on a wire: what the kernel cuts up is cut before it can be lost.
+		ip -n "$id-$ns" link set eth0 gso_max_segs 1
 		ip -n "$id-$ns" link set eth0 up
 		address=$((address + 1))
 	done

@@ -114,8 +114,10 @@ static void master_send(void *ctx, int to, const uint8_t *bytes, size_t len)
 	struct sim *s = ctx;
 
 	assert_true(len <= s->datagram_max);
+	assert_true(to != FDP_TO_GROUP || s->multicast);
+	s->to_group += to == FDP_TO_GROUP;
 	for (int i = 0; i < (int)s->node_count; i++)
-		if (to == FDP_TO_ALL || to == i)
+		if (to == FDP_TO_ALL || to == i || (to == FDP_TO_GROUP && !s->nodes[i].deaf))
 			carry(s, i, i, bytes, len);
 }
 
@@ -136,6 +138,11 @@ static void master_event(void *ctx, const struct fdp_master_event *e)
 	case FDP_MASTER_LATE: s->late++; break;
 	case FDP_MASTER_EVICTED: s->evicted++; break;
 	case FDP_MASTER_MISMATCH: s->mismatches++; break;
+	case FDP_MASTER_WAY:
+		s->ways++;
+		s->way = e->way;
+		s->deaf = e->node;
+		break;
 	case FDP_MASTER_SWAP:
 		assert_int_equal(e->frame, s->frame);
 		s->swapped++;
@@ -283,6 +290,7 @@ void sim_start_master(struct sim *s)
 		.multicast = s->multicast,
 		.swap = s->swap,
 		.swap_lead_most_ns = SIM_LEAD_MOST_NS,
+		.probe_group = s->probe_group,
 		.share_bytes = s->share_bytes,
 	};
 

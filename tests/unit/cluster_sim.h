@@ -31,6 +31,7 @@ struct sim_node {
 	struct fdp_node *node; /* NULL: dead */
 	bool cut;              /* no datagram passes */
 	bool asleep;           /* its machine is suspended */
+	bool deaf;             /* none that is sent to the group */
 	int64_t render_ns;     /* 0: drawn from 2..8 ms */
 	uint64_t drawing;      /* frame, 0 none */
 	int64_t drawn_at_ns;
@@ -51,6 +52,7 @@ struct sim {
 	size_t datagram_max;
 	enum fdp_swap swap;
 	int64_t slow_ns; /* what the way to the nodes takes longer than the way from them */
+	bool probe_group;
 	bool multicast, lamps; /* lamps: the larger parameters change every frame too */
 	unsigned evict_frames;
 
@@ -72,6 +74,9 @@ struct sim {
 	uint64_t state_hash[SIM_STATES];
 	uint64_t swapped, joined, left, late, evicted, mismatches, refused;
 	uint64_t fresh; /* datagrams that the master took as no recording */
+	uint64_t to_group, ways; /* datagrams to the group; FDP_MASTER_WAY */
+	enum fdp_way way;	 /* of the last of these, and whom it named */
+	int deaf;
 	bool join_pending;
 	char reason[FDP_REASON_MAX];
 	int64_t *delivery_ns; /* begin to FDP_NODE_FRAME, all nodes and frames */

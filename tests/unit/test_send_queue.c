@@ -120,7 +120,7 @@ static void any_sequence(void **state)
 	assert_int_equal(send_queue_create(&q, LONGEST), GR_OK);
 	for (int round = 0; round < 300; round++) {
 		const unsigned count = unit_random_u32(&r) % (SEND_QUEUE + 1);
-		const unsigned usual = unit_random_u32(&r) % LONGEST;
+		const unsigned usual = round & 1 ? LONGEST : unit_random_u32(&r) % LONGEST;
 
 		for (unsigned i = 0; i < count; i++) {
 			const uint32_t what = unit_random_u32(&r);
@@ -141,6 +141,30 @@ static void any_sequence(void **state)
 	close_ends(&e);
 }
 
+/* One datagram sent twice against loss is two on the way. */
+static void twice_is_two(void **state)
+{
+	struct send_stats stats;
+	struct send_queue *q;
+	struct ends e;
+
+	(void)state;
+	open_ends(&e);
+	assert_int_equal(send_queue_create(&q, LONGEST), GR_OK);
+	add(q, &e, 0, 200);
+	add(q, &e, 0, 200);
+	add(q, &e, 1, LONGEST);
+	add(q, &e, 1, 300);
+	add(q, &e, 1, 300);
+	send_queue_flush(q, e.out);
+	take_all(&e);
+	send_queue_stats(q, &stats);
+	assert_int_equal(stats.sent, 5);
+	assert_true(stats.joined <= 2);
+	send_queue_destroy(&q);
+	close_ends(&e);
+}
+
 /* A socket without checksums cannot cut, as a card without them: each goes by itself, none is lost. */
 static void without_gso(void **state)
 {
@@ -155,7 +179,7 @@ static void without_gso(void **state)
 	assert_int_equal(send_queue_create(&q, LONGEST), GR_OK);
 	for (int round = 0; round < 2; round++) {
 		for (int i = 0; i < 20; i++)
-			add(q, &e, i % WAYS, 1000);
+			add(q, &e, i % WAYS, LONGEST);
 		send_queue_flush(q, e.out);
 		take_all(&e);
 	}
@@ -174,6 +198,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(fragments),
 		cmocka_unit_test(any_sequence),
+		cmocka_unit_test(twice_is_two),
 		cmocka_unit_test(without_gso),
 	};
 

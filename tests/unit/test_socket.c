@@ -126,7 +126,7 @@ static void unicast_over(const char *address)
 		assert_int_equal(net_open_node(&nodes[i], &room.layout, (size_t)i), GR_OK);
 	/* To one: nobody else hears it. To all: each once. */
 	net_send(master, 1, bytes, 3);
-	net_send(master, -1, bytes, 4);
+	net_send(master, NET_TO_ALL, bytes, 4);
 	net_flush(master);
 	for (int i = 0; i < NODES; i++) {
 		assert_int_equal(listen_at(nodes[i], 0, &h), i == 1 ? 2 : 1);
@@ -150,7 +150,7 @@ static void unicast_over(const char *address)
 		net_close(&nodes[i]);
 	/* Nobody there: no error that stops anything. */
 	for (int i = 0; i < 10; i++) {
-		net_send(master, -1, bytes, 10);
+		net_send(master, NET_TO_ALL, bytes, 10);
 		net_flush(master);
 	}
 	net_close(&master);
@@ -196,7 +196,8 @@ static void group_over(enum layout_cast cast, const char *group)
 	assert_int_equal(net_open_master(&master, &room.layout), GR_OK);
 	for (int i = 0; i < NODES; i++)
 		assert_int_equal(net_open_node(&nodes[i], &room.layout, (size_t)i), GR_OK);
-	net_send(master, -1, bytes, sizeof bytes);
+	assert_true(net_has_group(master));
+	net_send(master, NET_TO_GROUP, bytes, sizeof bytes);
 	net_send(master, 0, bytes, 5);
 	net_flush(master);
 	struct net_stats stats;

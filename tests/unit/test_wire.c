@@ -147,6 +147,7 @@ static void each_field(void **state)
 	SAYS(FDP_BAD_SESSION, h.sender = 1); /* has not joined */
 	SAYS(FDP_BAD_REPLAY, h.to = 3);	     /* was for a node */
 	SAYS(FDP_BAD_FORMAT, h.kind = FDP_JOIN; h.to = 3);
+	SAYS(FDP_BAD_FORMAT, h.group = true; h.to = 3); /* to all and to one */
 	assert_int_equal(sealed(ack_header(), other_key, 10), FDP_BAD_AUTH);
 	SAYS(FDP_BAD_VERSION, h.version = 2);
 	SAYS(FDP_BAD_VERSION, h.version = 4);
@@ -187,7 +188,7 @@ static void reserved_bits(void **state)
 	uint8_t bytes[FDP_HEADER_BYTES + 10] = { 0 };
 
 	(void)state;
-	for (unsigned bit = 1; bit < 8; bit++) {
+	for (unsigned bit = 2; bit < 8; bit++) {
 		fdp_wire_seal(&h, keys[2], bytes);
 		bytes[6] = (uint8_t)(bytes[6] | 1u << bit);
 		fdp_wire_sign(keys[2], bytes, sizeof bytes);
