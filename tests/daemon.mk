@@ -60,3 +60,15 @@ tests_unit_test_trackers_SOURCES = tests/unit/test_trackers.c tests/unit/unit.h
 tests_unit_test_trackers_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_trackers_LDADD = daemon/libgdaemon.a $(TRACKING_LIBS) $(CONFIG_LIBS) \
 	$(PROTOCOL_LIBS) $(CMOCKA_LIBS)
+
+EXTRA_DIST += tests/fuzz/fuzz_control.c \
+	tests/fuzz/corpus/control/cut \
+	tests/fuzz/corpus/control/set \
+	tests/fuzz/corpus/control/wrong
+if FUZZERS
+noinst_PROGRAMS += tests/fuzz/fuzz_control
+tests_fuzz_fuzz_control_SOURCES = tests/fuzz/fuzz_control.c
+tests_fuzz_fuzz_control_CFLAGS = $(TEST_CFLAGS) $(CGLM_CFLAGS)
+tests_fuzz_fuzz_control_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_control_LDADD = daemon/libgdaemon.a $(PROTOCOL_LIBS) $(CONFIG_LIBS) $(SYSTEMD_LIBS) -lm
+endif

@@ -72,6 +72,12 @@ tests_unit_test_wire_LDADD = $(PROTOCOL_TEST_LDADD)
 EXTRA_DIST += \
 	tests/fuzz/fuzz_datagram_master.c tests/fuzz/fuzz_datagram_node.c \
 	tests/fuzz/fuzz_delta.c tests/fuzz/fuzz_key.c tests/fuzz/fuzz_pair.h \
+	tests/fuzz/fuzz_reassembly.c tests/fuzz/fuzz_stranger.c \
+	tests/fuzz/corpus/reassembly/honest \
+	tests/fuzz/corpus/reassembly/lies \
+	tests/fuzz/corpus/stranger/ack \
+	tests/fuzz/corpus/stranger/beacon \
+	tests/fuzz/corpus/stranger/short \
 	tests/fuzz/corpus/datagram/ack \
 	tests/fuzz/corpus/datagram/announce \
 	tests/fuzz/corpus/datagram/announce-slices \
@@ -102,6 +108,15 @@ tests_fuzz_fuzz_delta_SOURCES = tests/fuzz/fuzz_delta.c
 tests_fuzz_fuzz_delta_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_fuzz_fuzz_delta_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
 tests_fuzz_fuzz_delta_LDADD = $(PROTOCOL_LIBS)
+noinst_PROGRAMS += tests/fuzz/fuzz_reassembly tests/fuzz/fuzz_stranger
+tests_fuzz_fuzz_reassembly_SOURCES = tests/fuzz/fuzz_reassembly.c
+tests_fuzz_fuzz_reassembly_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_fuzz_fuzz_reassembly_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_reassembly_LDADD = $(PROTOCOL_LIBS)
+tests_fuzz_fuzz_stranger_SOURCES = tests/fuzz/fuzz_stranger.c
+tests_fuzz_fuzz_stranger_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_fuzz_fuzz_stranger_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_stranger_LDADD = $(PROTOCOL_LIBS)
 tests_fuzz_fuzz_key_SOURCES = tests/fuzz/fuzz_key.c
 tests_fuzz_fuzz_key_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_fuzz_fuzz_key_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer

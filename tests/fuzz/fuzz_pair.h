@@ -169,7 +169,7 @@ static void fuzz_pair_start(struct fuzz_pair *p, size_t datagram_max)
 	fuzz_deliver(p);
 }
 
-static void fuzz_pair_stop(struct fuzz_pair *p)
+static __attribute__((unused)) void fuzz_pair_stop(struct fuzz_pair *p)
 {
 	fdp_master_destroy(&p->master);
 	fdp_node_destroy(&p->nodes[0]);
@@ -184,7 +184,7 @@ static void fuzz_pair_stop(struct fuzz_pair *p)
  * wants it, since the keys are known here. Returns its length, 0 at the end of
  * the input.
  */
-static size_t fuzz_next(struct fuzz_pair *p, struct gr_reader *r, uint8_t *bytes, size_t size,
+static __attribute__((unused)) size_t fuzz_next(struct fuzz_pair *p, struct gr_reader *r, uint8_t *bytes, size_t size,
 			uint16_t sender, uint64_t *sequence)
 {
 	const uint8_t right = gr_read_u8(r);
