@@ -48,6 +48,12 @@ tests_loopback_stranger_SOURCES = tests/loopback/stranger.c tests/unit/unit.h
 tests_loopback_stranger_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
 tests_loopback_stranger_LDADD = $(PROTOCOL_LIBS)
 
+check_PROGRAMS += tests/loopback/forger
+tests_loopback_forger_SOURCES = tests/loopback/forger.c tests/unit/unit.h
+tests_loopback_forger_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
+tests_loopback_forger_LDADD = $(PROTOCOL_LIBS)
+dist_check_SCRIPTS += tests/loopback/forged.sh
+TESTS += tests/loopback/forged.sh
 dist_check_SCRIPTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh \
 	tests/loopback/group.sh tests/loopback/share_survives.sh
 TESTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh \
