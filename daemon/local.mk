@@ -6,6 +6,8 @@ daemon_libgdaemon_a_SOURCES = \
 	daemon/frame_stats.c daemon/frame_stats.h \
 	daemon/histogram.c daemon/histogram.h \
 	daemon/json.c daemon/json.h \
+	daemon/frame_source.h \
+	daemon/live_source.c daemon/live_source.h \
 	daemon/loop.c daemon/loop.h \
 	daemon/master_settings.c daemon/master_settings.h \
 	daemon/master_state.c daemon/master_state.h \
@@ -13,6 +15,8 @@ daemon_libgdaemon_a_SOURCES = \
 	daemon/notify.c daemon/notify.h \
 	daemon/options.c daemon/options.h \
 	daemon/recorder.c daemon/recorder.h \
+	daemon/replay_check.c daemon/replay_check.h \
+	daemon/replay_source.c daemon/replay_source.h \
 	daemon/priority.c daemon/priority.h \
 	daemon/privileges.c daemon/privileges.h \
 	daemon/send_queue.c daemon/send_queue.h \

@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/result.h"
+#include "protocol/message.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -152,13 +153,16 @@ static void on_report(void *ctx, unsigned node, unsigned kind, const struct fdp_
 	struct master *m = ctx;
 
 	recorder_report(m->recorder, m->heard_ns, node, kind, report);
+	/* SWAPPED names no state. */
+	if (m->source->ops->held && kind != FDP_SWAPPED)
+		m->source->ops->held(m->source, node, report->frame, report->hash);
 }
 
 static void on_sample(void *ctx, size_t tracker, const struct track_sample *sample, bool taken)
 {
 	struct master *m = ctx;
 
-	recorder_sample(m->recorder, m->polled_ns, tracker, sample, taken);
+	recorder_sample(m->recorder, m->params.live->polled_ns, tracker, sample, taken);
 }
 
 /*
@@ -183,68 +187,78 @@ static void look_for_caught_up(struct master *m, int64_t now_ns)
 	}
 }
 
-/* The frame's time on the master's scale. */
-static int64_t frame_time(const struct master *m, uint64_t frame, int64_t now_ns)
-{
-	if (!m->params.frame_clock)
-		return now_ns - m->start_ns;
-	return llrint((double)frame * 1e9 / (double)m->params.layout->rates.frame_hz);
-}
-
-static int64_t frame_deadline(const struct master *m)
+static int64_t frame_deadline(const struct master *m, bool restarts_light)
 {
 	int64_t usual = m->params.layout->rates.barrier_deadline_ns, longer = RESTART_PATIENCE * usual;
 
-	if (!m->restart_light || usual >= RESTART_PATIENCE_NS)
+	if (!restarts_light || usual >= RESTART_PATIENCE_NS)
 		return usual;
 	return longer < RESTART_PATIENCE_NS ? longer : RESTART_PATIENCE_NS;
 }
 
-static void record_frame(struct master *m, uint64_t previous_frame, uint64_t previous_hash,
-			 int64_t now_ns)
+static void record_frame(struct master *m, const struct frame_next *next, uint64_t previous_hash,
+			 uint64_t live, int64_t now_ns)
 {
 	const struct record_frame frame = {
-		.frame = m->frame, .previous_frame = previous_frame,
+		.frame = next->frame,
+		.previous_frame = next->jumps ? next->previous_frame : m->frame,
 		.hash = fdp_master_hash(m->fdp), .previous_hash = previous_hash,
-		.live = barrier_nodes(m),
+		.live = live,
 	};
 
 	recorder_frame(m->recorder, now_ns, m->state, &frame);
 }
 
+/* Asks what comes next. False when nothing does: the room ends, in order or not. */
+static bool next_frame(struct master *m, int64_t now_ns, struct frame_next *next)
+{
+	const struct frame_moment moment = {
+		.now_ns = now_ns,
+		.to_swap_ns = m->params.frame_clock || m->stats.smoothed_swap_ns == 0 ?
+				      m->period_ns : m->stats.smoothed_swap_ns,
+		.last = m->frame,
+		.restart_light = m->restart_light,
+	};
+	uint64_t times;
+	int r = m->source->ops->next(m->source, &moment, m->state, next);
+
+	if (r == GR_OK && next->refused && gr_log_limit(&m->range_limit, now_ns, &times))
+		gr_warning("frame %" PRIu64 ": %s is outside its range and keeps its value (%" PRIu64
+			   " since the last line)", next->frame, next->refused, times);
+	if (r == GR_OK && next->jumps)
+		r = fdp_master_chain(m->fdp, next->previous_frame, next->previous_hash);
+	if (r == GR_OK)
+		return true;
+	if (r < 0)
+		gr_error("after frame %" PRIu64 " none can be shown: %s", m->frame, gr_result_name(r));
+	loop_stop(m->loop);
+	return false;
+}
+
 static void begin_frame(struct master *m, int64_t now_ns)
 {
-	uint64_t frame = m->frame + 1, previous_hash, times;
-	int64_t time_ns = frame_time(m, frame, now_ns);
-	int64_t to_swap_ns = m->params.frame_clock || m->stats.smoothed_swap_ns == 0 ?
-				     m->period_ns : m->stats.smoothed_swap_ns;
-	const char *refused = NULL;
+	struct frame_next next;
+	uint64_t previous_hash, live;
 	int r;
 
 	look_for_caught_up(m, now_ns);
-	m->polled_ns = now_ns;
-	trackers_poll(m->trackers, time_ns);
-	trackers_sample(m->trackers,
-			time_ns + to_swap_ns + m->params.layout->rates.display_latency_ns, &m->input);
-	m->input.step_ns = m->frame == 0 ? 0 : time_ns - m->last_time_ns;
-	m->input.time_ns = m->last_time_ns = time_ns;
-	if (m->restart_light)
+	if (!next_frame(m, now_ns, &next))
+		return;
+	if (next.restarts_light)
 		m->light_restart_ns = now_ns;
-	fdp_master_set_deadline(m->fdp, frame_deadline(m));
-	r = master_state_frame(&m->scene_state, &m->input, m->restart_light, m->state, frame,
-			       &refused);
-	if (r < 0 && gr_log_limit(&m->range_limit, now_ns, &times))
-		gr_warning("frame %" PRIu64 ": %s is outside its range and keeps its value (%" PRIu64
-			   " since the last line)", frame, refused, times);
+	fdp_master_set_deadline(m->fdp, frame_deadline(m, next.restarts_light));
 	m->restart_light = false;
 	previous_hash = fdp_master_hash(m->fdp);
-	m->frame = frame;
-	r = fdp_master_begin(m->fdp, m->state, frame, now_ns);
-	frame_stats_begin(&m->stats, frame, barrier_nodes(m), now_ns);
+	r = fdp_master_begin(m->fdp, m->state, next.frame, now_ns);
+	live = barrier_nodes(m);
+	frame_stats_begin(&m->stats, next.frame, live, now_ns);
 	net_flush(m->net);
-	record_frame(m, frame - 1, previous_hash, now_ns);
+	record_frame(m, &next, previous_hash, live, now_ns);
+	m->frame = next.frame;
+	if (m->source->ops->begun)
+		m->source->ops->begun(m->source, live, fdp_master_hash(m->fdp), now_ns);
 	if (r < 0) {
-		gr_error("frame %" PRIu64 " cannot begin: %s", frame, gr_result_name(r));
+		gr_error("frame %" PRIu64 " cannot begin: %s", m->frame, gr_result_name(r));
 		loop_stop(m->loop);
 	}
 	/* On the grid of the period; frames whose time is past are not made up for. */
@@ -274,17 +288,28 @@ static bool may_begin(struct master *m)
  * be lost. (With the real clock frames are a period apart, and the next is
  * drawn while a display waits for its refresh to show the last.)
  */
-static bool frame_time_has_come(const struct master *m, int64_t now_ns)
+static int64_t frame_due(const struct master *m)
 {
+	const int64_t due_ns = m->source->ops->due ? m->source->ops->due(m->source) : FRAME_SOURCE_GRID;
+
+	if (due_ns != FRAME_SOURCE_GRID)
+		return due_ns;
 	if (!m->params.frame_clock || m->frame == 0)
-		return now_ns >= m->next_frame_ns;
-	return frame_stats_settled(&m->stats, m->frame) || now_ns >= m->swap_ns + m->period_ns;
+		return m->next_frame_ns;
+	return frame_stats_settled(&m->stats, m->frame) ? 0 : m->swap_ns + m->period_ns;
+}
+
+static bool frames_are_over(const struct master *m)
+{
+	if (m->source->ops->over && m->source->ops->over(m->source))
+		return true;
+	return m->params.frames != 0 && m->stats.begun >= m->params.frames;
 }
 
 /* Begins to end once the last frame has swapped: waits a little for the reports of it. */
 static void look_for_end(struct master *m, int64_t now_ns)
 {
-	if (m->params.frames == 0 || m->frame < m->params.frames || !fdp_master_idle(m->fdp))
+	if (!frames_are_over(m) || !fdp_master_idle(m->fdp))
 		return;
 	if (m->finish_ns == 0)
 		m->finish_ns = now_ns + m->params.layout->rates.barrier_deadline_ns + GR_NS_PER_S;
@@ -300,10 +325,11 @@ static void advance(struct master *m)
 	net_flush(m->net);
 	look_for_end(m, now_ns);
 	if (may_begin(m)) {
-		if (frame_time_has_come(m, now_ns))
+		frame_ns = frame_due(m);
+		if (now_ns >= frame_ns) {
 			begin_frame(m, now_ns);
-		else
-			frame_ns = m->params.frame_clock ? m->swap_ns + m->period_ns : m->next_frame_ns;
+			frame_ns = LOOP_NEVER;
+		}
 	}
 	if (m->finish_ns != 0)
 		frame_ns = m->finish_ns;
@@ -407,8 +433,8 @@ static void on_second(void *ctx, int64_t now_ns)
 	struct master *m = ctx;
 	size_t live = members(m), all = m->params.layout->node_count;
 
-	/* Waiting for nodes is healthy; a room that has them must show frames. */
-	if (live == 0 || !m->started)
+	/* Waiting for nodes, or for a person's step, is healthy; else a room must show frames. */
+	if (live == 0 || !m->started || frame_due(m) == LOOP_NEVER)
 		notify_feed(&m->notify, now_ns);
 	if (m->frame == m->logged_frame)
 		notify_status("waiting for nodes: %zu of %zu live", live, all);
@@ -467,7 +493,7 @@ static int create_protocol(struct master *m)
 }
 
 int master_create(struct master **out, struct loop *loop, struct net *net,
-		  struct trackers *trackers, const struct master_params *params)
+		  const struct master_params *params)
 {
 	struct master *m = calloc(1, sizeof *m);
 	int fds[2], r;
@@ -478,16 +504,15 @@ int master_create(struct master **out, struct loop *loop, struct net *net,
 	m->params = *params;
 	m->loop = loop;
 	m->net = net;
-	m->trackers = trackers;
-	trackers->tap = (struct trackers_tap){ on_sample, m };
 	m->deaf = -1;
+	m->source = params->replay ? replay_source_frames(params->replay) : &params->live->source;
+	if (params->live)
+		params->live->trackers->tap = (struct trackers_tap){ on_sample, m };
 	m->period_ns = llrint(1e9 / (double)params->layout->rates.frame_hz);
 	do
 		randombytes_buf(&m->session, sizeof m->session);
 	while (m->session == 0);
 	notify_init(&m->notify);
-	master_state_init(&m->scene_state, params->layout, params->scene);
-	master_state_start_input(&m->scene_state, &m->input);
 	r = param_state_create(&m->state);
 	if (r >= 0)
 		r = create_protocol(m);
@@ -506,6 +531,8 @@ int master_create(struct master **out, struct loop *loop, struct net *net,
 		return r;
 	}
 	m->start_ns = m->next_frame_ns = gr_clock_now(&gr_clock_monotonic);
+	if (params->live)
+		params->live->start_ns = m->start_ns;
 	on_second(m, m->start_ns);
 	*out = m;
 	return GR_OK;

@@ -14,12 +14,12 @@
 
 #include "daemon/dropped.h"
 #include "daemon/frame_stats.h"
+#include "daemon/live_source.h"
 #include "daemon/loop.h"
-#include "daemon/master_state.h"
 #include "daemon/notify.h"
 #include "daemon/recorder.h"
+#include "daemon/replay_source.h"
 #include "daemon/socket.h"
-#include "daemon/trackers.h"
 #include "protocol/master.h"
 
 #include "base/log.h"
@@ -34,6 +34,9 @@ struct master_params {
 	uint64_t frames; /* end after so many; 0: for ever */
 	unsigned expect; /* nodes that must be live before the first frame, at least 1 */
 	bool frame_clock;
+	/* Where frames come from: one of these, the other NULL. Borrowed. */
+	struct live_source *live;
+	struct replay_source *replay;
 };
 
 struct master {
@@ -41,18 +44,16 @@ struct master {
 	struct loop *loop;
 	struct net *net;
 	const struct net_address *from; /* of the datagram that is being handled, or NULL */
-	int64_t heard_ns, polled_ns;    /* when it came; when the trackers were asked last */
-	struct trackers *trackers;
+	int64_t heard_ns;               /* when it came */
+	struct frame_source *source;
 	struct fdp_master *fdp;
 	struct param_state *state;
-	struct master_state scene_state;
-	struct master_input input;
 	struct notify notify;
 	struct recorder *recorder; /* NULL: nothing can be recorded */
 	struct frame_stats stats;
 
 	uint64_t session, frame; /* frame: the last begun */
-	int64_t start_ns, next_frame_ns, last_time_ns;
+	int64_t start_ns, next_frame_ns;
 	int64_t period_ns;
 	bool started;       /* `expect` nodes were there */
 	bool restart_light; /* at the next frame */
@@ -73,9 +74,9 @@ struct master {
 	uint64_t seen_send_failed;
 };
 
-/* net and trackers are borrowed; the loop too. On failure the log says why. */
+/* net and loop are borrowed. On failure the log says why. */
 int master_create(struct master **out, struct loop *loop, struct net *net,
-		  struct trackers *trackers, const struct master_params *params);
+		  const struct master_params *params);
 /* From now on what happens can be recorded. The recorder is borrowed. */
 void master_use_recorder(struct master *master, struct recorder *recorder);
 /* Begins a recording: as recorder_start. */

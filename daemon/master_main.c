@@ -15,6 +15,7 @@
 #include "daemon/privileges.h"
 #include "daemon/room_files.h"
 
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,6 +25,8 @@ struct opened {
 	struct room_files files;
 	char *layout_path, *scene_path, *record_path; /* absolute */
 	struct recorder *recorder;
+	struct live_source live;
+	struct replay_source *replay; /* NULL: live */
 	struct trackers trackers;
 	struct loop *loop;
 	struct net *net;
@@ -41,6 +44,34 @@ static char *absolute(const char *path)
 		whole = NULL;
 	free(folder);
 	return whole;
+}
+
+static int open_live(struct opened *o, const struct master_options *options, struct gr_diag *diag)
+{
+	int r = trackers_open(&o->trackers, o->files.layout, diag);
+
+	live_source_init(&o->live, o->files.layout, o->files.scene_file, &o->trackers,
+			 options->frame_clock);
+	return r;
+}
+
+static int open_replay(struct opened *o, const struct master_options *options, struct gr_diag *diag)
+{
+	const struct fdp_contents contents = room_files_contents(&o->files);
+	const struct replay_params params = {
+		.path = options->replay,
+		.recording = options->recording,
+		.from_ns = llrint(options->from_s * 1e9),
+		.speed = options->speed,
+		.as_fast = options->frame_clock,
+		.step = options->step,
+		.frames = (uint64_t)options->frames,
+	};
+	const struct replay_room room = {
+		options->other_layout ? NULL : contents.layout_hash, contents.scene_hash,
+	};
+
+	return replay_source_create(&o->replay, &params, &room, diag);
 }
 
 static int load(struct opened *o, const struct master_options *options)
@@ -65,13 +96,13 @@ static int load(struct opened *o, const struct master_options *options)
 		if (!o->record_path)
 			return GR_ERR_NOMEM;
 	}
-	r = trackers_open(&o->trackers, o->files.layout, &diag);
+	r = options->replay ? open_replay(o, options, &diag) : open_live(o, options, &diag);
 	gr_diag_log(&diag);
 	gr_diag_finish(&diag);
 	return r;
 }
 
-static void fill_params(struct master_params *params, const struct opened *o,
+static void fill_params(struct master_params *params, struct opened *o,
 			const struct master_options *options)
 {
 	*params = (struct master_params){
@@ -83,6 +114,8 @@ static void fill_params(struct master_params *params, const struct opened *o,
 		.expect = options->wait_all ? (unsigned)o->files.layout->node_count :
 					      (unsigned)options->expect,
 		.frame_clock = options->frame_clock,
+		.live = o->replay ? NULL : &o->live,
+		.replay = o->replay,
 	};
 	params->contents = room_files_contents(&o->files);
 	memcpy(params->key, o->files.key, sizeof params->key);
@@ -124,7 +157,7 @@ static int open_all(struct opened *o, const struct master_options *options)
 	if (r < 0)
 		return r;
 	fill_params(&params, o, options);
-	r = master_create(&o->master, o->loop, o->net, &o->trackers, &params);
+	r = master_create(&o->master, o->loop, o->net, &params);
 	if (r >= 0 && path)
 		r = control_create(&o->control, o->loop, path, master_answer, o->master);
 	if (r >= 0)
@@ -178,6 +211,7 @@ static void close_all(struct opened *o)
 	recorder_destroy(&o->recorder); /* waits for the disk */
 	net_close(&o->net);
 	trackers_close(&o->trackers);
+	replay_source_destroy(&o->replay);
 	room_files_finish(&o->files);
 	loop_destroy(&o->loop);
 	free(o->layout_path);
@@ -220,6 +254,8 @@ int main(int argc, char **argv)
 	status = run(&o);
 	notify_stopping();
 	master_leave(o.master);
+	if (o.replay && !replay_source_end(o.replay))
+		status = GR_EXIT_RUNTIME;
 	if (options.common.report && report(o.master, options.common.report) != GR_EXIT_OK)
 		status = GR_EXIT_RUNTIME;
 out:

@@ -38,7 +38,8 @@ static void fill_session(const struct master *m, struct record_session *s)
 	clock_gettime(CLOCK_REALTIME, &wall);
 	*s = (struct record_session){
 		.protocol = FDP_VERSION,
-		.flags = m->params.frame_clock ? RECORD_FRAME_CLOCK : 0,
+		.flags = (uint16_t)((m->params.frame_clock ? RECORD_FRAME_CLOCK : 0) |
+				    (m->params.replay ? RECORD_OF_REPLAY : 0)),
 		.session = m->session,
 		.table_hash = param_table_hash(),
 		.wall_ns = (int64_t)wall.tv_sec * GR_NS_PER_S + wall.tv_nsec,

@@ -8,6 +8,7 @@
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static void write_histogram(struct json *json, const char *key, const struct histogram *histogram)
@@ -170,16 +171,31 @@ static void write_frames(struct json *json, const struct master *m)
 
 static void write_tracking(struct json *json, const struct master *m)
 {
-	const struct gr_pose *head = &m->input.head.T_room_body;
+	const struct live_source *live = m->params.live;
+	const struct gr_pose *head = &live->input.head.T_room_body;
 
 	json_open(json, "tracking", '{');
-	json_bool(json, "head_tracked", m->input.head.tracked);
-	json_bool(json, "wand_tracked", m->input.wand.tracked);
-	json_u64(json, "dropped", m->trackers->history.dropped);
+	json_bool(json, "head_tracked", live->input.head.tracked);
+	json_bool(json, "wand_tracked", live->input.wand.tracked);
+	json_u64(json, "dropped", live->trackers->history.dropped);
 	json_open(json, "head_m", '[');
 	for (int i = 0; i < 3; i++)
 		json_f64(json, NULL, (double)head->p[i]);
 	json_close(json, ']');
+	json_close(json, '}');
+}
+
+static const char *name_of_node(const void *ctx, int node)
+{
+	const struct layout *layout = ctx;
+
+	return node >= 0 && (size_t)node < layout->node_count ? layout->nodes[node].name : "?";
+}
+
+static void write_replay(struct json *json, const struct master *m)
+{
+	json_open(json, "replay", '{');
+	replay_source_write_json(m->params.replay, json, name_of_node, m->params.layout);
 	json_close(json, '}');
 }
 
@@ -193,7 +209,7 @@ static void write_record(struct json *json, const struct master *m)
 
 static void write_settings(struct json *json, const struct master *m)
 {
-	const struct master_settings *s = &m->scene_state.settings;
+	const struct master_settings *s = &m->params.live->scene_state.settings;
 
 	json_open(json, "settings", '{');
 	json_u64(json, "gi_on", s->gi_on);
@@ -233,8 +249,12 @@ int master_write_json(const struct master *m, int64_t now_ns, char *text, size_t
 	json_close(&json, ']');
 	write_share(&json, m);
 	write_wire(&json, m);
-	write_tracking(&json, m);
-	write_settings(&json, m);
+	if (m->params.live) {
+		write_tracking(&json, m);
+		write_settings(&json, m);
+	}
+	if (m->params.replay)
+		write_replay(&json, m);
 	write_record(&json, m);
 	json_close(&json, '}');
 	*out_len = json.len;
@@ -254,7 +274,11 @@ static void answer_set(struct master *m, char *const *words, int count, char *an
 		control_refuse(answer, size, "write: set NAME VALUE...");
 		return;
 	}
-	if (master_settings_set(&m->scene_state.settings, m->params.scene, words + 1, count - 1, why,
+	if (!m->params.live) {
+		control_refuse(answer, size, "a recording is replayed: its settings are what they were");
+		return;
+	}
+	if (master_settings_set(&m->params.live->scene_state.settings, m->params.scene, words + 1, count - 1, why,
 				sizeof why) < 0) {
 		control_refuse(answer, size, "%s", why);
 		return;
@@ -286,6 +310,21 @@ static void answer_record(struct master *m, char *const *words, int count, char 
 	json_close(&json, '}');
 }
 
+static void answer_step(struct master *m, char *const *words, int count, char *answer, size_t size)
+{
+	char *end = NULL;
+	long frames = count == 2 ? strtol(words[1], &end, 10) : 1;
+
+	if (count > 2 || (end && *end) || frames < 1 || frames > 1000000) {
+		control_refuse(answer, size, "write: step, or step N with N from 1 to 1000000");
+	} else if (!m->params.replay || replay_source_step(m->params.replay, (uint64_t)frames) < 0) {
+		control_refuse(answer, size, "no recording is replayed by steps (--replay FILE --step)");
+	} else {
+		loop_timer_set(m->loop, m->frame_timer, 0);
+		answer_ok(answer, size);
+	}
+}
+
 void master_answer(void *ctx, char *const *words, int count, char *answer, size_t size)
 {
 	struct master *m = ctx;
@@ -296,6 +335,8 @@ void master_answer(void *ctx, char *const *words, int count, char *answer, size_
 			control_refuse(answer, size, "the answer is longer than %zu bytes", size);
 	} else if (!strcmp(words[0], "set")) {
 		answer_set(m, words, count, answer, size);
+	} else if (!strcmp(words[0], "step")) {
+		answer_step(m, words, count, answer, size);
 	} else if (!strcmp(words[0], "record")) {
 		answer_record(m, words, count, answer, size);
 	} else if (!strcmp(words[0], "quit") && count == 1) {
@@ -303,7 +344,7 @@ void master_answer(void *ctx, char *const *words, int count, char *answer, size_
 		answer_ok(answer, size);
 		loop_stop(m->loop);
 	} else {
-		control_refuse(answer, size, "no request '%.40s'; there are status, set NAME VALUE..., record, quit",
+		control_refuse(answer, size, "no request '%.40s'; there are status, set NAME VALUE..., record, step, quit",
 			       words[0]);
 	}
 }

@@ -44,6 +44,21 @@ static bool set_int(const struct option_spec *spec, int *out, const char *text)
 	return true;
 }
 
+static bool set_real(const struct option_spec *spec, double *out, const char *text)
+{
+	char *end;
+	double value;
+
+	errno = 0;
+	value = strtod(text, &end);
+	if (errno || end == text || *end || !(value >= spec->min && value <= spec->max)) {
+		gr_error("--%s '%s': give a number from %d to %d", spec->name, text, spec->min, spec->max);
+		return false;
+	}
+	*out = value;
+	return true;
+}
+
 static bool set_choice(const struct option_spec *spec, int *out, const char *text)
 {
 	char words[256] = "";
@@ -76,6 +91,7 @@ static bool set_value(const struct option_spec *spec, void *values, const char *
 		*(const char **)at = text;
 		return true;
 	case OPTION_INT: return set_int(spec, at, text);
+	case OPTION_REAL: return set_real(spec, at, text);
 	case OPTION_FLAG: *(bool *)at = true; return true;
 	case OPTION_CHOICE: return set_choice(spec, at, text);
 	}
@@ -146,6 +162,12 @@ static const struct option_spec master_specs[] = {
 	COMMON(master_options),
 	{ "control", OPTION_TEXT, AT(master_options, control), "PATH", "control socket instead of the layout's, or none", 0, 0, NULL, NULL },
 	{ "record", OPTION_TEXT, AT(master_options, record), "FILE", "record the session at the end of this file", 0, 0, NULL, NULL },
+	{ "replay", OPTION_TEXT, AT(master_options, replay), "FILE", "show this recording instead of what trackers and settings say", 0, 0, NULL, NULL },
+	{ "speed", OPTION_REAL, AT(master_options, speed), "X", "of the replay, times the recorded one [1]; with --frame-clock as fast as the barrier allows", 0, 1000, NULL, NULL },
+	{ "step", OPTION_FLAG, AT(master_options, step), NULL, "replay a frame for each 'step' of the control socket", 0, 0, NULL, NULL },
+	{ "from", OPTION_REAL, AT(master_options, from_s), "S", "replay from so many seconds after the recording began", 0, 10000000, NULL, NULL },
+	{ "recording", OPTION_INT, AT(master_options, recording), "N", "replay the Nth of the file [1]", 1, 1000000, NULL, NULL },
+	{ "other-layout", OPTION_FLAG, AT(master_options, other_layout), NULL, "the recording may be of another layout", 0, 0, NULL, NULL },
 	{ "frames", OPTION_INT, AT(master_options, frames), "N", "end after N frames", 1, INT_MAX, NULL, NULL },
 	{ "frame-clock", OPTION_FLAG, AT(master_options, frame_clock), NULL, "frame N is at N / frame_hz seconds; as fast as the barrier allows", 0, 0, NULL, NULL },
 	{ "wait-all", OPTION_FLAG, AT(master_options, wait_all), NULL, "no frame before every node of the layout is there", 0, 0, NULL, NULL },
@@ -172,11 +194,23 @@ static const struct common_options common_defaults = {
 
 enum options_outcome master_options_parse(struct master_options *options, int argc, char **argv)
 {
-	*options = (struct master_options){ .common = common_defaults, .expect = 1 };
-	return command_line_parse("grotto-master",
+	enum options_outcome outcome;
+
+	*options = (struct master_options){ .common = common_defaults, .expect = 1, .recording = 1 };
+	outcome = command_line_parse("grotto-master",
 			     "Runs a room: tracks the visitor, tells every node what to draw, swaps all walls in step.",
 			     master_specs, sizeof master_specs / sizeof *master_specs, options, argc,
 			     argv);
+	if (outcome == OPTIONS_RUN && !options->replay &&
+	    (options->speed != 0 || options->step || options->from_s != 0 || options->other_layout ||
+	     options->recording != 1)) {
+		gr_error("--speed, --step, --from, --recording and --other-layout say how to replay; "
+			 "--replay FILE is missing");
+		return OPTIONS_WRONG;
+	}
+	if (outcome == OPTIONS_RUN && options->speed == 0)
+		options->speed = 1;
+	return outcome;
 }
 
 enum options_outcome node_options_parse(struct node_options *options, int argc, char **argv)

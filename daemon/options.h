@@ -10,6 +10,7 @@
 enum option_kind {
 	OPTION_TEXT,  /* const char *: points into argv */
 	OPTION_INT,   /* int, within min..max */
+	OPTION_REAL,  /* double, within min..max */
 	OPTION_FLAG,  /* bool, true when given */
 	OPTION_CHOICE /* int: the index of the word in `choices` */
 };
@@ -48,6 +49,10 @@ struct master_options {
 	struct common_options common;
 	const char *control; /* path, "none", or NULL: the layout's */
 	const char *record;  /* file, or NULL */
+	const char *replay;  /* file, or NULL: trackers and settings */
+	double speed, from_s; /* of the replay */
+	int recording;
+	_Bool step, other_layout;
 	int frames;          /* 0: for ever */
 	_Bool frame_clock, wait_all;
 	int expect;

@@ -297,6 +297,17 @@ int fdp_master_begin(struct fdp_master *m, const struct param_state *state, uint
 	return GR_OK;
 }
 
+int fdp_master_chain(struct fdp_master *m, uint64_t previous_frame, uint64_t previous_hash)
+{
+	if (m->underway)
+		return GR_ERR_STATE;
+	if (previous_frame < m->frame)
+		return GR_ERR_RANGE;
+	m->frame = previous_frame;
+	m->hash = previous_hash;
+	return GR_OK;
+}
+
 /* Marks who was not ready; they keep counting until they have missed too many. */
 static void mark_late(struct fdp_master *m)
 {

@@ -178,6 +178,12 @@ void fdp_master_destroy(struct fdp_master **master);
 int fdp_master_begin(struct fdp_master *master, const struct param_state *state, uint64_t frame,
 		     int64_t now_ns);
 /*
+ * Directly before begin: the next frame's hash is chained to this one (not
+ * below the last begun), as where frames of a recording are missing.
+ * GR_ERR_STATE, GR_ERR_RANGE.
+ */
+int fdp_master_chain(struct fdp_master *master, uint64_t previous_frame, uint64_t previous_hash);
+/*
  * A datagram that arrived. Returns the node it is authentically from (>= 0),
  * or a negative result; everything bad is counted and dropped.
  *

@@ -1,0 +1,49 @@
+#include "daemon/live_source.h"
+
+#include "base/result.h"
+
+#include <math.h>
+
+/* The frame's time on the master's scale. */
+static int64_t frame_time(const struct live_source *live, uint64_t frame, int64_t now_ns)
+{
+	if (!live->frame_clock)
+		return now_ns - live->start_ns;
+	return llrint((double)frame * 1e9 / (double)live->layout->rates.frame_hz);
+}
+
+static int next(struct frame_source *source, const struct frame_moment *moment,
+		struct param_state *state, struct frame_next *out)
+{
+	struct live_source *live = (struct live_source *)source;
+	const uint64_t frame = moment->last + 1;
+	const int64_t time_ns = frame_time(live, frame, moment->now_ns);
+
+	live->polled_ns = moment->now_ns;
+	trackers_poll(live->trackers, time_ns);
+	trackers_sample(live->trackers,
+			time_ns + moment->to_swap_ns + live->layout->rates.display_latency_ns,
+			&live->input);
+	live->input.step_ns = moment->last == 0 ? 0 : time_ns - live->last_time_ns;
+	live->input.time_ns = live->last_time_ns = time_ns;
+	*out = (struct frame_next){ .frame = frame, .restarts_light = moment->restart_light };
+	/* Says in `refused` what was outside its range; the frame is good. */
+	(void)master_state_frame(&live->scene_state, &live->input, moment->restart_light, state, frame,
+				 &out->refused);
+	return GR_OK;
+}
+
+static const struct frame_source_ops live_ops = { .next = next };
+
+void live_source_init(struct live_source *live, const struct layout *layout,
+		      const struct scene_file *scene, struct trackers *trackers, bool frame_clock)
+{
+	*live = (struct live_source){
+		.source.ops = &live_ops,
+		.layout = layout,
+		.trackers = trackers,
+		.frame_clock = frame_clock,
+	};
+	master_state_init(&live->scene_state, layout, scene);
+	master_state_start_input(&live->scene_state, &live->input);
+}
