@@ -6,12 +6,19 @@ tests_unit_test_record_SOURCES = tests/unit/test_record.c tests/unit/record_make
 tests_unit_test_record_CFLAGS = $(TEST_CFLAGS) -D_GNU_SOURCE
 tests_unit_test_record_LDADD = $(RECORD_LIBS) $(CMOCKA_LIBS)
 
+check_PROGRAMS += tests/unit/test_replay_source
+TESTS += tests/unit/test_replay_source
+tests_unit_test_replay_source_SOURCES = tests/unit/test_replay_source.c tests/unit/record_make.c \
+	tests/unit/record_make.h tests/unit/unit.h
+tests_unit_test_replay_source_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_replay_source_LDADD = daemon/libgdaemon.a $(RECORD_LIBS) $(CMOCKA_LIBS)
+
 check_PROGRAMS += tests/loopback/walk
 tests_loopback_walk_SOURCES = tests/loopback/walk.c
 tests_loopback_walk_CFLAGS = $(TEST_CFLAGS)
 tests_loopback_walk_LDADD = daemon/libgdaemon.a $(TRACKING_LIBS) $(CONFIG_LIBS) $(RECORD_LIBS)
-dist_check_SCRIPTS += tests/loopback/record.sh
-TESTS += tests/loopback/record.sh
+dist_check_SCRIPTS += tests/loopback/record.sh tests/loopback/replay.sh
+TESTS += tests/loopback/record.sh tests/loopback/replay.sh
 
 EXTRA_DIST += \
 	tests/fuzz/fuzz_record.c \

@@ -25,7 +25,7 @@ int children_start(struct children *children)
 {
 	sigset_t ending;
 
-	*children = (struct children){ .signal_fd = -1, .timer_fd = -1 };
+	*children = (struct children){ .signal_fd = -1, .timer_fd = -1, .input_fd = -1 };
 	sigemptyset(&ending);
 	sigaddset(&ending, SIGINT);
 	sigaddset(&ending, SIGTERM);
@@ -57,7 +57,7 @@ void children_finish(struct children *children)
 	if (children->timer_fd >= 0)
 		close(children->timer_fd);
 	sigprocmask(SIG_SETMASK, &children->old_signals, NULL);
-	*children = (struct children){ .signal_fd = -1, .timer_fd = -1 };
+	*children = (struct children){ .signal_fd = -1, .timer_fd = -1, .input_fd = -1 };
 }
 
 /* In the child: only async-signal-safe calls. Reports errno through `report` on failure. */
@@ -178,6 +178,11 @@ int children_tick(struct children *children, int64_t interval_ns)
 	return timerfd_settime(children->timer_fd, 0, &spec, NULL) == 0 ? GR_OK : GR_ERR_IO;
 }
 
+void children_input(struct children *children, int fd)
+{
+	children->input_fd = fd;
+}
+
 /* Takes the status of a child whose pidfd is readable. */
 static void reap(struct children *children, size_t i)
 {
@@ -217,13 +222,15 @@ static enum children_event look(struct children *children, const struct pollfd *
 		return CHILDREN_SIGNAL;
 	if ((fds[children->count + 1].revents & POLLIN) && drain(children->timer_fd))
 		return CHILDREN_TICK;
+	if (fds[children->count + 2].revents & (POLLIN | POLLHUP | POLLERR))
+		return CHILDREN_INPUT;
 	return CHILDREN_TIMEOUT;
 }
 
 enum children_event children_wait(struct children *children, int64_t timeout_ns,
 				  size_t *out_child)
 {
-	struct pollfd fds[WATCHED_MAX + 2];
+	struct pollfd fds[WATCHED_MAX + 3];
 	int64_t until = gr_clock_now(&gr_clock_monotonic) + timeout_ns;
 
 	for (;;) {
@@ -236,9 +243,10 @@ enum children_event children_wait(struct children *children, int64_t timeout_ns,
 			fds[i] = (struct pollfd){ children->items[i].pidfd, POLLIN, 0 };
 		fds[children->count] = (struct pollfd){ children->signal_fd, POLLIN, 0 };
 		fds[children->count + 1] = (struct pollfd){ children->timer_fd, POLLIN, 0 };
+		fds[children->count + 2] = (struct pollfd){ children->input_fd, POLLIN, 0 };
 		if (left_ns > 0)
 			left = (struct timespec){ left_ns / 1000000000, left_ns % 1000000000 };
-		n = ppoll(fds, children->count + 2, timeout_ns < 0 ? NULL : &left, NULL);
+		n = ppoll(fds, children->count + 3, timeout_ns < 0 ? NULL : &left, NULL);
 		if (n < 0 && errno != EINTR)
 			return CHILDREN_FAILED;
 		if (n == 0)

@@ -31,6 +31,7 @@ struct children {
 	sigset_t old_signals;
 	int signal_fd; /* SIGINT, SIGTERM, SIGHUP */
 	int timer_fd;  /* ticks */
+	int input_fd;  /* see children_input; -1: none */
 };
 
 /* Blocks the ending signals. GR_OK or GR_ERR_IO (errno). */
@@ -49,6 +50,7 @@ int children_spawn(struct children *children, const char *name, char *const argv
 enum children_event {
 	CHILDREN_ENDED,  /* *out_child has ended */
 	CHILDREN_TICK,   /* the tick set by children_tick */
+	CHILDREN_INPUT,  /* there is something to read, or the end of it */
 	CHILDREN_SIGNAL, /* a person asked to end */
 	CHILDREN_TIMEOUT,
 	CHILDREN_FAILED, /* poll failed (errno) */
@@ -56,6 +58,8 @@ enum children_event {
 
 /* Tick every interval_ns; 0 stops it. */
 int children_tick(struct children *children, int64_t interval_ns);
+/* Also waits for this descriptor to become readable; -1: for none. Borrowed. */
+void children_input(struct children *children, int fd);
 /* Blocks for at most timeout_ns (negative: for ever). */
 enum children_event children_wait(struct children *children, int64_t timeout_ns,
 				  size_t *out_child);

@@ -13,6 +13,7 @@ int command_demo(int argc, char **argv);
 int command_key(int argc, char **argv);
 int command_record(int argc, char **argv);
 int command_reference(int argc, char **argv);
+int command_replay(int argc, char **argv);
 int command_render(int argc, char **argv);
 int command_status(int argc, char **argv);
 

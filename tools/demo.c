@@ -83,6 +83,20 @@ static int input_result(int result)
 	}
 }
 
+/* Addresses will be others than recorded, so the master cannot compare it any more. */
+static int check_layout(const struct demo *demo, struct gr_diag *diag)
+{
+	const struct demo_replay *replay = demo->options.replay;
+
+	if (!replay || replay->other_layout ||
+	    memcmp(demo->layout->hash, replay->layout_hash, sizeof replay->layout_hash) == 0)
+		return GR_OK;
+	gr_diag_add(diag, GR_DIAG_ERROR, demo->options.layout, 0, NULL,
+		    "is not the layout of the recording %s; give that one, or --other-layout",
+		    replay->file);
+	return GR_ERR_CONFIG;
+}
+
 /* All of it before anything is started: the daemons would refuse it one by one. */
 static int load(struct demo *demo, struct gr_diag *diag)
 {
@@ -93,6 +107,8 @@ static int load(struct demo *demo, struct gr_diag *diag)
 	if (scene_result == GR_OK)
 		scene_result = scene_import(demo->scene, &scene, diag);
 	scene_destroy(&scene);
+	if (result == GR_OK)
+		result = check_layout(demo, diag);
 	return input_result(result != GR_OK ? result : scene_result);
 }
 
@@ -129,6 +145,12 @@ static int write_layout(const struct demo *demo)
 	return result;
 }
 
+/* The room's own nodes show it: their layout is used as it is. */
+static bool in_room(const struct demo *demo)
+{
+	return demo->options.replay && demo->options.replay->room;
+}
+
 static int prepare(struct demo *demo, struct gr_diag *diag)
 {
 	struct demo_plan plan = {
@@ -148,11 +170,15 @@ static int prepare(struct demo *demo, struct gr_diag *diag)
 			    strerror(errno));
 		return result;
 	}
+	demo->scene_path = realpath(demo->options.scene, NULL);
+	if (in_room(demo)) {
+		demo->layout_path = realpath(demo->options.layout, NULL);
+		return demo->layout_path && demo->scene_path ? GR_OK : GR_ERR_NOMEM;
+	}
 	result = demo_plan_apply(&plan, demo->layout, diag);
 	if (result != GR_OK)
 		return result;
 	demo->layout_path = demo_path(demo, "layout", ".cave");
-	demo->scene_path = realpath(demo->options.scene, NULL);
 	if (!demo->layout_path || !demo->scene_path)
 		return GR_ERR_NOMEM;
 	result = write_layout(demo);
@@ -182,12 +208,23 @@ static bool all_ended_well(const struct demo *demo)
 	return demo->children.count == demo->layout->node_count + 1;
 }
 
+/* How many faults there were; -1 when that cannot be said. */
+static int judge(struct demo *demo)
+{
+	int frames = demo->options.replay ? demo_replayed(demo) : demo->options.frames;
+
+	/* Somebody who steps through a recording may end before its end. */
+	if (frames >= 0)
+		demo->options.frames = frames;
+	return demo_summary(demo);
+}
+
 static int run(struct demo *demo)
 {
 	int faults;
 
 	if (children_start(&demo->children) != GR_OK) {
-		fprintf(stderr, "grotto demo: %s\n", strerror(errno));
+		fprintf(stderr, "%s: %s\n", demo->command, strerror(errno));
 		return GR_EXIT_RUNTIME;
 	}
 	printf("%s: %zu wall%s, %zu node%s, %d frame%s of %s into %s\n", demo->layout->name,
@@ -196,8 +233,8 @@ static int run(struct demo *demo)
 	       demo->options.frames, demo->options.frames == 1 ? "" : "s", demo->scene->name,
 	       demo->options.out);
 	fflush(stdout);
-	faults = demo_run(demo) == GR_OK ? demo_summary(demo) : -1;
-	if (all_ended_well(demo) && demo_room(demo) != GR_OK)
+	faults = demo_run(demo) == GR_OK ? judge(demo) : -1;
+	if (!in_room(demo) && all_ended_well(demo) && demo_room(demo) != GR_OK)
 		faults = -1;
 	children_finish(&demo->children);
 	return faults == 0 ? GR_EXIT_OK : GR_EXIT_RUNTIME;
@@ -217,9 +254,17 @@ static int plan_and_run(struct demo *demo)
 	return result == GR_OK ? run(demo) : GR_EXIT_RUNTIME;
 }
 
+int demo_main(struct demo *demo)
+{
+	int status = plan_and_run(demo);
+
+	demo_finish(demo);
+	return status;
+}
+
 int command_demo(int argc, char **argv)
 {
-	struct demo d = { .options = { .out = "grotto-demo", .frames = 120, .deadline_ms = 600000,
+	struct demo d = { .command = "grotto demo", .options = { .out = "grotto-demo", .frames = 120, .deadline_ms = 600000,
 				       .patience_s = 600, .pixels_scale = 1 } };
 	struct demo_options *o = &d.options;
 	const struct cli_option options[] = {
@@ -239,6 +284,8 @@ int command_demo(int argc, char **argv)
 		  "frames a second in real time; else as fast as all walls can" },
 		{ "deadline-ms", 0, CLI_INT, &o->deadline_ms, 1, 600000, "MS",
 		  "of the swap barrier: later nodes miss the frame (600000)" },
+		{ "record", 0, CLI_TEXT, &o->record, 0, 0, "FILE",
+		  "the master records the session at the end of this file" },
 		{ "patience", 0, CLI_INT, &o->patience_s, 1, 86400, "S",
 		  "give up after so long without a new frame (600)" },
 	};
@@ -273,8 +320,7 @@ int command_demo(int argc, char **argv)
 			o->layout ? DEFAULT_SCENE : DEFAULT_LAYOUT,
 			o->layout ? "scene" : "layout");
 	else
-		status = plan_and_run(&d);
-	demo_finish(&d);
+		status = demo_main(&d);
 	free(layout);
 	free(scene);
 	return status;

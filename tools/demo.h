@@ -12,8 +12,20 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* `grotto replay`: the master's frames come from a recording. */
+struct demo_replay {
+	const char *file;
+	int recording;
+	float speed, from_s;
+	bool fast, step, other_layout;
+	bool room; /* the nodes are the layout's own, and run already: none is started */
+	uint8_t layout_hash[32]; /* recorded */
+};
+
 struct demo_options {
 	const char *layout, *scene, *out;
+	const char *record; /* the master records into this file; NULL: it does not */
+	const struct demo_replay *replay; /* NULL: a simulated visitor, or what the layout tracks */
 	int frames, every;
 	int deadline_ms; /* of the swap barrier */
 	int patience_s;  /* without a new frame for so long: it hangs */
@@ -22,6 +34,7 @@ struct demo_options {
 };
 
 struct demo {
+	const char *command; /* "grotto demo": for messages */
 	struct demo_options options;
 	struct layout *layout;      /* as planned: what the daemons run */
 	struct scene_file *scene;
@@ -33,6 +46,14 @@ struct demo {
 	bool interrupted, stalled;
 	int64_t took_ns;            /* from the first process to the last one's end */
 };
+
+/*
+ * Plans, runs and judges what the options say, and frees what it took. An exit
+ * status.
+ */
+int demo_main(struct demo *demo);
+/* Frames that the master says it replayed; -1 when it left no report. One line about them. */
+int demo_replayed(const struct demo *demo);
 
 /* out/NAME.SUFFIX, caller frees; NULL without memory. */
 char *demo_path(const struct demo *demo, const char *name, const char *suffix);

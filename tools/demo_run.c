@@ -92,6 +92,31 @@ static struct arguments arguments_start(const struct demo *demo, const char *pro
 	return arguments;
 }
 
+static void add_real(struct arguments *arguments, const char *name, float value)
+{
+	char text[32];
+
+	snprintf(text, sizeof text, "%.9g", (double)value);
+	add_option(arguments, name, text);
+}
+
+static void add_replay(struct arguments *arguments, const struct demo_replay *replay)
+{
+	add_option(arguments, "--replay", replay->file);
+	add_number(arguments, "--recording", replay->recording);
+	if (replay->from_s > 0)
+		add_real(arguments, "--from", replay->from_s);
+	if (replay->fast)
+		add_argument(arguments, "--frame-clock");
+	else
+		add_real(arguments, "--speed", replay->speed);
+	if (replay->step)
+		add_argument(arguments, "--step");
+	/* The planned layout has other addresses; the one that it is made from was compared. */
+	if (replay->other_layout || !replay->room)
+		add_argument(arguments, "--other-layout");
+}
+
 static int spawn_master(struct demo *demo, const char *program)
 {
 	struct arguments arguments = arguments_start(demo, program, "master");
@@ -99,8 +124,13 @@ static int spawn_master(struct demo *demo, const char *program)
 
 	add_number(&arguments, "--frames", demo->options.frames);
 	add_argument(&arguments, "--wait-all");
+	add_option(&arguments, "--control", demo->socket);
+	if (demo->options.record)
+		add_option(&arguments, "--record", demo->options.record);
+	if (demo->options.replay)
+		add_replay(&arguments, demo->options.replay);
 	/* At a rate the visitor walks in real time, else as fast as the walls are drawn. */
-	if (demo->options.rate_hz <= 0)
+	else if (demo->options.rate_hz <= 0)
 		add_argument(&arguments, "--frame-clock");
 	result = spawn(demo, "master", "master", &arguments);
 	arguments_finish(&arguments);
@@ -127,6 +157,11 @@ static int spawn_node(struct demo *demo, const char *program, const struct layou
 	return result;
 }
 
+static size_t started_nodes(const struct demo *demo)
+{
+	return demo->options.replay && demo->options.replay->room ? 0 : demo->layout->node_count;
+}
+
 static int spawn_all(struct demo *demo)
 {
 	char *master = programs_find("grotto-master");
@@ -134,37 +169,41 @@ static int spawn_all(struct demo *demo)
 	int result = GR_ERR_IO;
 
 	if (!master || !node)
-		fprintf(stderr, "grotto demo: %s is neither beside this program nor in %s\n",
+		fprintf(stderr, "%s: %s is neither beside this program nor in %s\n", demo->command,
 			master ? "grotto-node" : "grotto-master", GROTTO_SBINDIR);
 	else
 		result = spawn_master(demo, master);
-	for (size_t i = 0; i < demo->layout->node_count && result == GR_OK; i++)
+	for (size_t i = 0; i < started_nodes(demo) && result == GR_OK; i++)
 		result = spawn_node(demo, node, &demo->layout->nodes[i]);
 	free(master);
 	free(node);
 	return result;
 }
 
-/* The frame that the master is at; -1 while it does not say. */
-static int64_t ask_frame(const struct demo *demo)
+/* How many frames the master has begun, and how many all swapped; -1 while it does not say. */
+static void ask_frames(const struct demo *demo, int64_t *out_begun, int64_t *out_complete)
 {
 	static char answer[ASK_ANSWER_MAX]; /* too large for a stack, used by one thread */
-	struct json_object *root, *frame;
-	int64_t at = -1;
+	struct json_object *root, *count;
 
+	*out_begun = *out_complete = -1;
 	if (ask_master(demo->socket, "status", ASK_NS, answer, sizeof answer) != GR_OK)
-		return -1;
+		return;
 	root = json_tokener_parse(answer);
-	if (root && json_object_object_get_ex(root, "frame", &frame))
-		at = json_object_get_int64(frame);
+	if (root && json_object_object_get_ex(root, "frames", &count))
+		*out_begun = json_object_get_int64(count);
+	if (root && json_object_object_get_ex(root, "frames_complete", &count))
+		*out_complete = json_object_get_int64(count);
 	json_object_put(root);
-	return at;
 }
 
 struct progress {
 	bool terminal;
 	int64_t frame, shown; /* last known, last printed; -1 none */
 	int64_t changed_ns;
+	/* Of a replay by steps: frames that a person asked for, and that the master was told of. */
+	int64_t asked, told;
+	bool input_ended; /* there will be no more of them */
 };
 
 static void show_progress(struct progress *progress, int frames)
@@ -183,17 +222,57 @@ static void show_progress(struct progress *progress, int frames)
 	progress->shown = progress->frame;
 }
 
+static bool ask_to(const struct demo *demo, const char *request)
+{
+	static char answer[ASK_ANSWER_MAX]; /* as above */
+
+	return ask_master(demo->socket, request, ASK_NS, answer, sizeof answer) == GR_OK;
+}
+
+/* The master may not listen yet: then at the next tick. */
+static void tell_steps(const struct demo *demo, struct progress *progress)
+{
+	char request[32];
+
+	snprintf(request, sizeof request, "step %lld", (long long)(progress->asked - progress->told));
+	if (progress->asked > progress->told && ask_to(demo, request))
+		progress->told = progress->asked;
+}
+
+/* A line on the standard input is a frame. */
+static void step(struct demo *demo, struct progress *progress)
+{
+	char bytes[512];
+	ssize_t n = read(STDIN_FILENO, bytes, sizeof bytes);
+
+	for (ssize_t i = 0; i < n; i++)
+		progress->asked += bytes[i] == '\n';
+	tell_steps(demo, progress);
+	if (n <= 0) {
+		children_input(&demo->children, -1);
+		progress->input_ended = true;
+	}
+}
+
 /* True while there is hope. */
 static bool watch_progress(struct demo *demo, struct progress *progress)
 {
 	int64_t now_ns = gr_clock_now(&gr_clock_monotonic);
-	int64_t frame = ask_frame(demo);
+	int64_t frame, complete;
+
+	ask_frames(demo, &frame, &complete);
 
 	if (frame >= 0 && frame != progress->frame) {
 		progress->frame = frame;
 		progress->changed_ns = now_ns;
 	}
 	show_progress(progress, demo->options.frames);
+	tell_steps(demo, progress);
+	if (progress->input_ended && complete >= progress->asked)
+		ask_to(demo, "quit");
+	/* A person may think for long. */
+	if (demo->options.replay && demo->options.replay->step && complete >= progress->told)
+		progress->changed_ns = now_ns;
 	demo->stalled = now_ns - progress->changed_ns > demo->options.patience_s * GR_NS_PER_S;
 	return !demo->stalled;
 }
@@ -214,8 +293,8 @@ static int64_t nodes_end_ns(const struct demo *demo)
 static void watch(struct demo *demo)
 {
 	struct children *children = &demo->children;
-	struct progress progress = { isatty(STDOUT_FILENO) == 1, -1, -1,
-				     gr_clock_now(&gr_clock_monotonic) };
+	struct progress progress = { .terminal = isatty(STDOUT_FILENO) == 1, .frame = -1, .shown = -1,
+				     .changed_ns = gr_clock_now(&gr_clock_monotonic) };
 	int64_t until_ns = INT64_MAX; /* set when the master has ended */
 	bool well = true;
 
@@ -237,6 +316,9 @@ static void watch(struct demo *demo)
 		case CHILDREN_TICK:
 			well = watch_progress(demo, &progress);
 			break;
+		case CHILDREN_INPUT:
+			step(demo, &progress);
+			break;
 		case CHILDREN_SIGNAL:
 			demo->interrupted = true;
 			well = false;
@@ -247,7 +329,7 @@ static void watch(struct demo *demo)
 			break;
 		}
 	}
-	if (well && progress.shown >= 0 && child_ended_well(&children->items[0])) {
+	if (well && progress.shown >= 0 && !progress.input_ended && child_ended_well(&children->items[0])) {
 		progress.frame = demo->options.frames;
 		show_progress(&progress, demo->options.frames);
 	}
@@ -264,6 +346,8 @@ int demo_run(struct demo *demo)
 	result = spawn_all(demo);
 	if (result == GR_OK) {
 		children_tick(&demo->children, PROGRESS_NS);
+		if (demo->options.replay && demo->options.replay->step)
+			children_input(&demo->children, STDIN_FILENO);
 		watch(demo);
 	}
 	children_end(&demo->children, END_NS);

@@ -110,6 +110,55 @@ static void judge_node(struct summary *summary, size_t i)
 			  (long long)report_count(report, "nonfinite"));
 }
 
+static struct json_object *load(const struct demo *demo, const char *file)
+{
+	char *path = demo_path(demo, file, ".json");
+	struct json_object *report = path ? report_load(path) : NULL;
+
+	free(path);
+	return report;
+}
+
+/* The master has compared; its status says the same, but not what. */
+static void judge_replay(struct summary *summary)
+{
+	struct json_object *replay = report_member(summary->master, "replay");
+
+	if (!replay)
+		return;
+	if (report_count(replay, "different") > 0)
+		add_fault(summary, "%lld states differ from the record; the first at frame %lld on %s: %s, recorded %s",
+			  (long long)report_count(replay, "different"),
+			  (long long)report_count(replay, "first_difference.frame"),
+			  report_text(replay, "first_difference.where"),
+			  report_text(replay, "first_difference.found"),
+			  report_text(replay, "first_difference.recorded"));
+	if (report_count(replay, "unanswered") > 0)
+		add_fault(summary, "%lld times a node did not say which state it holds",
+			  (long long)report_count(replay, "unanswered"));
+	if (report_count(replay, "frames_wrong") > 0)
+		add_fault(summary, "%lld states of the file are not what their hash says",
+			  (long long)report_count(replay, "frames_wrong"));
+}
+
+int demo_replayed(const struct demo *demo)
+{
+	struct json_object *master = load(demo, "master"), *replay = report_member(master, "replay");
+	int frames = replay ? (int)report_count(replay, "frames") : -1;
+
+	if (replay)
+		printf("replayed %lld frames: %lld states of the master and %lld of nodes as recorded, %lld differ\n",
+		       (long long)report_count(replay, "frames"),
+		       (long long)report_count(replay, "master_equal"),
+		       (long long)report_count(replay, "nodes_equal"),
+		       (long long)report_count(replay, "different"));
+	if (report_count(replay, "frames_missing") > 0)
+		printf("%lld frames of the recording are missing or damaged and were left out\n",
+		       (long long)report_count(replay, "frames_missing"));
+	json_object_put(master);
+	return frames;
+}
+
 static void judge(struct summary *summary)
 {
 	const struct demo *demo = summary->demo;
@@ -130,6 +179,7 @@ static void judge(struct summary *summary)
 				  children->items[i].name);
 	if (children->count > 0 && child_ended_well(&children->items[0]) && !summary->master)
 		add_fault(summary, "the master left no report");
+	judge_replay(summary);
 	for (size_t i = 0; i < demo->layout->node_count; i++)
 		if (i + 1 < children->count && !children->items[i + 1].told &&
 		    child_ended_well(&children->items[i + 1]))
@@ -193,6 +243,7 @@ static struct json_object *summary_json(struct summary *summary)
 		"frames_complete", "frames_incomplete", "late", "evicted", "state_hash", "skew_us",
 		"skew_told_us", "skew_scheduled_us",
 		"commit_to_applied_us", "commit_to_swap_sent_us", "commit_to_last_swap_us", "share", "wire",
+		"replay",
 	};
 	const struct demo *demo = summary->demo;
 	struct json_object *out = json_object_new_object();
@@ -344,7 +395,8 @@ static void print_frames(const struct summary *summary)
 
 static void print_summary(const struct summary *summary)
 {
-	print_nodes(summary);
+	if (summary->demo->children.count > 1)
+		print_nodes(summary);
 	if (summary->master) {
 		print_skew(summary->master, "swap skew, told", "skew_told_us");
 		print_skew(summary->master, "swap skew, at a time", "skew_scheduled_us");
@@ -378,15 +430,6 @@ static int save_json(const struct demo *demo, struct json_object *json)
 		fprintf(stderr, "%s/summary.json: cannot be written\n", demo->options.out);
 	free(path);
 	return result;
-}
-
-static struct json_object *load(const struct demo *demo, const char *file)
-{
-	char *path = demo_path(demo, file, ".json");
-	struct json_object *report = path ? report_load(path) : NULL;
-
-	free(path);
-	return report;
 }
 
 int demo_summary(const struct demo *demo)

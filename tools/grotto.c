@@ -21,6 +21,7 @@ static const struct command {
 	{ "record", command_record, "record a running room, look at recordings" },
 	{ "reference", command_reference, "path-trace what the renderer should show" },
 	{ "render", command_render, "draw one still of a scene" },
+	{ "replay", command_replay, "show a recording again, and check every state" },
 	{ "status", command_status, "ask the running master how its room is" },
 };
 

@@ -34,6 +34,7 @@ tools_grotto_SOURCES = \
 	tools/reference_points.c \
 	tools/reference_view.c \
 	tools/render.c \
+	tools/replay.c \
 	tools/status.c
 tools_grotto_CPPFLAGS = $(AM_CPPFLAGS) -DGROTTO_SBINDIR='"$(sbindir)"' \
 	-DGROTTO_PKGLIBEXECDIR='"$(pkglibexecdir)"'

@@ -45,6 +45,15 @@ grep -q '"exposure 0.75"' "$dir/csv/events.csv" || fail "events: $(cat "$dir/csv
 record --export - --table events "$dir/room.rec" | cmp - "$dir/csv/events.csv" || fail "two tables of events"
 echo "ok: tables"
 
+# What the killed master left is shown again, on nodes of its own: every state as it was.
+"$grotto" replay "$dir/room.rec" --fast --out "$dir/again" > "$dir/again.said" 2>&1 ||
+	fail "the killed recording does not replay: $(cat "$dir/again.said")"
+jq -e --argjson frames "$(fact .frames)" '.ok and .replay.frames == $frames and
+	.replay.master_equal == $frames and .replay.nodes_equal == 4 * $frames and
+	.replay.different + .replay.unanswered + .replay.frames_missing == 0' "$dir/again/summary.json" > /dev/null ||
+	fail "replayed: $(jq -c .replay "$dir/again/summary.json")"
+echo "ok: $(grep '^replayed' "$dir/again.said")"
+
 # A running room is recorded on a word, at the end of the same file.
 start_master --expect 2
 wait_for 60 frame_is_past 5
