@@ -77,6 +77,7 @@ struct layout_network {
 	char *group; /* multicast group or broadcast address, NULL for unicast */
 	uint16_t group_port;
 	int ttl;
+	bool loop;      /* the group is heard on the sending machine, too */
 	int mtu;        /* bytes of an IP packet */
 	char *key_file; /* absolute, or relative to the layout file; NULL: unkeyed, loopback only */
 	int key_file_line; /* in the file, 0 without one */
@@ -180,7 +181,7 @@ int layout_write(FILE *file, const struct layout *layout);
  * monitor and gpu (one node's own). layout_load has stored it in hash. Returns the
  * number of parts, at most LAYOUT_ITEMS_MAX.
  */
-#define LAYOUT_ITEMS_MAX (2 * LAYOUT_MAX_NODES + 16)
+#define LAYOUT_ITEMS_MAX (2 * LAYOUT_MAX_NODES + 17)
 size_t layout_items(const struct layout *layout, struct gr_item *items, size_t room,
 		    uint8_t hash[32]);
 

@@ -106,6 +106,24 @@ static void check_interface(struct options_reader *reader, const struct layout_f
 			      name, IF_NAMESIZE - 1);
 }
 
+/* A group that does not come back to its machine reaches no node there. */
+static void check_loop(struct options_reader *reader, const struct layout_file *file,
+		       const struct endpoint *ends, size_t count)
+{
+	const struct layout_network *network = &file->network.network;
+
+	if (network->loop || network->cast == LAYOUT_UNICAST || network->cast == LAYOUT_BROADCAST)
+		return;
+	for (size_t i = 1; i < count; i++)
+		if (!ends[0].node && address_equal(&ends[i].address, &ends[0].address)) {
+			options_fault(reader, GR_DIAG_ERROR, file->at, "network.loop",
+				      "false, but node \"%s\" is on the master's machine and would not hear "
+				      "the group; leave it out",
+				      ends[i].node->node.name);
+			return;
+		}
+}
+
 #define NEEDS_KEY "so every machine needs the cluster's key: network.key_file = \"/etc/grotto/cluster.key\""
 
 /* Where the group's datagrams go when there is no key. */
@@ -187,6 +205,7 @@ void layout_check_network(struct options_reader *reader, struct layout_file *fil
 		}
 	check_group(reader, file, master ? &ends[0].address : NULL);
 	check_interface(reader, file);
+	check_loop(reader, file, ends, count);
 	check_key(reader, file, ends, count);
 	if (master && !ends[0].address.v4 && network->mtu < MTU_MIN_V6)
 		options_fault(reader, GR_DIAG_ERROR, file->at, "network.mtu",

@@ -42,6 +42,7 @@ static void network_items(struct canonical_items *items, const struct layout_net
 	canonical_string(canonical_item(items, "network.group"), network->group);
 	canonical_u64(canonical_item(items, "network.group_port"), network->group_port);
 	canonical_u64(canonical_item(items, "network.ttl"), (uint64_t)network->ttl);
+	canonical_u64(canonical_item(items, "network.loop"), network->loop);
 	canonical_u64(canonical_item(items, "network.mtu"), (uint64_t)network->mtu);
 }
 

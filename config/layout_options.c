@@ -103,6 +103,8 @@ static const struct option network_options[] = {
 	{ .key = "ttl", .type = OPTION_INT, .min = 0, .max = 255, .standard = "1",
 	  .unit = "hops", AT(layout_file_network, network.ttl),
 	  .help = "how many routers a multicast datagram may pass, plus one" },
+	{ .key = "loop", .type = OPTION_BOOL, .standard = "true", AT(layout_file_network, network.loop),
+	  .help = "whether multicast is heard on the sending machine too; nodes beside the master need it" },
 	{ .key = "mtu", .type = OPTION_INT, .min = 576, .max = 9000, .standard = "1500",
 	  .unit = "bytes", AT(layout_file_network, network.mtu),
 	  .help = "largest IP packet that the room's net carries whole" },

@@ -164,10 +164,10 @@ static int interface_index(const struct layout_network *network, unsigned *out)
 	return GR_OK;
 }
 
-/* Master: where group datagrams leave, how far they go, and that they are heard here too. */
+/* Master: where group datagrams leave, how far they go, and whether they are heard here too. */
 static int set_group_out(struct net *net, const struct layout_network *network)
 {
-	int family = net->group.sa.ss_family, one = 1, r;
+	int family = net->group.sa.ss_family, one = 1, loop = network->loop, r;
 	unsigned index;
 	bool ok;
 
@@ -180,13 +180,13 @@ static int set_group_out(struct net *net, const struct layout_network *network)
 		ok = setsockopt(net->fd, IPPROTO_IPV6, IPV6_MULTICAST_IF, &index, sizeof index) == 0 &&
 		     setsockopt(net->fd, IPPROTO_IPV6, IPV6_MULTICAST_HOPS, &network->ttl,
 				sizeof network->ttl) == 0 &&
-		     setsockopt(net->fd, IPPROTO_IPV6, IPV6_MULTICAST_LOOP, &one, sizeof one) == 0;
+		     setsockopt(net->fd, IPPROTO_IPV6, IPV6_MULTICAST_LOOP, &loop, sizeof loop) == 0;
 	} else {
 		struct ip_mreqn where = { .imr_ifindex = (int)index };
 		ok = setsockopt(net->fd, IPPROTO_IP, IP_MULTICAST_IF, &where, sizeof where) == 0 &&
 		     setsockopt(net->fd, IPPROTO_IP, IP_MULTICAST_TTL, &network->ttl,
 				sizeof network->ttl) == 0 &&
-		     setsockopt(net->fd, IPPROTO_IP, IP_MULTICAST_LOOP, &one, sizeof one) == 0;
+		     setsockopt(net->fd, IPPROTO_IP, IP_MULTICAST_LOOP, &loop, sizeof loop) == 0;
 	}
 	if (!ok) {
 		say("group cannot be sent to", &net->group);

@@ -1,8 +1,8 @@
 /*
  * Who may take part. A JOIN without a challenge is only answered, never
  * acted on: it may be a recording. What acts is the second JOIN, which
- * echoes a challenge that is bound to this session, this node's nonce and
- * the number of its incarnations so far, so that none is good twice.
+ * echoes a challenge that is bound to this session, both nonces and the number
+ * of the node's incarnations so far, so that none is good twice.
  */
 #include "protocol/master_private.h"
 
@@ -14,7 +14,8 @@ static void make_challenge(const struct fdp_master *m, unsigned node,
 			   const uint8_t nonce[FDP_NONCE_BYTES],
 			   uint8_t challenge[FDP_NONCE_BYTES])
 {
-	fdp_challenge(m->params.key, m->params.session, node, m->peers[node].joins, nonce, challenge);
+	fdp_challenge(m->params.key, m->params.session, node, m->peers[node].joins, m->nonce, nonce,
+		      challenge);
 }
 
 static void refuse(struct fdp_master *m, unsigned node, const struct fdp_join *join,

@@ -46,8 +46,8 @@ void fdp_key_to_master(const uint8_t cluster[FDP_KEY_BYTES], uint64_t session, u
 }
 
 void fdp_challenge(const uint8_t cluster[FDP_KEY_BYTES], uint64_t session, unsigned node,
-		   uint64_t joins, const uint8_t node_nonce[FDP_NONCE_BYTES],
-		   uint8_t challenge[FDP_NONCE_BYTES])
+		   uint64_t joins, const uint8_t master_nonce[FDP_NONCE_BYTES],
+		   const uint8_t node_nonce[FDP_NONCE_BYTES], uint8_t challenge[FDP_NONCE_BYTES])
 {
 	static const char label[LABEL_BYTES] = "fdp join challenge";
 	uint8_t text[TEXT_MAX];
@@ -55,6 +55,7 @@ void fdp_challenge(const uint8_t cluster[FDP_KEY_BYTES], uint64_t session, unsig
 
 	gr_write_u64(&w, node);
 	gr_write_u64(&w, joins);
+	gr_write_bytes(&w, master_nonce, FDP_NONCE_BYTES);
 	gr_write_bytes(&w, node_nonce, FDP_NONCE_BYTES);
 	crypto_generichash(challenge, FDP_NONCE_BYTES, text, w.len, cluster, FDP_KEY_BYTES);
 }

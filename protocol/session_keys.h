@@ -22,7 +22,7 @@ void fdp_key_to_master(const uint8_t cluster[FDP_KEY_BYTES], uint64_t session, u
 		       const uint8_t challenge[FDP_NONCE_BYTES], uint8_t key[FDP_KEY_BYTES]);
 /* What a node must echo to come in as its incarnation after so many `joins`. */
 void fdp_challenge(const uint8_t cluster[FDP_KEY_BYTES], uint64_t session, unsigned node,
-		   uint64_t joins, const uint8_t node_nonce[FDP_NONCE_BYTES],
-		   uint8_t challenge[FDP_NONCE_BYTES]);
+		   uint64_t joins, const uint8_t master_nonce[FDP_NONCE_BYTES],
+		   const uint8_t node_nonce[FDP_NONCE_BYTES], uint8_t challenge[FDP_NONCE_BYTES]);
 
 #endif

@@ -45,6 +45,7 @@ static void test_unkeyed(void **state)
 {
 	static const char *const good[] = {
 		"cast = \"multicast\"; interface = \"lo\"; group = \"239.1.1.1\"",
+		"cast = \"auto\"; interface = \"lo\"; group = \"239.1.1.1\"",
 		"cast = \"broadcast\"; group = \"127.255.255.255\"",
 		"cast = \"broadcast\"; key_file = \"k\"; group = \"192.0.2.255\"",
 		"cast = \"multicast\"; key_file = \"k\"; group = \"239.1.1.1\"",
@@ -78,6 +79,7 @@ static void test_items(void **state)
 		{ "frame_hz = 60.0", "barrier_deadline_ms = 51.0", "rates.barrier_deadline_ms" },
 		{ "mtu = 1500", "mtu = 1400", "network.mtu" },
 		{ "mtu = 1500", "ttl = 2", "network.ttl" },
+		{ "mtu = 1500", "loop = false", "network.loop" },
 		{ "master_port = 5000", "master_port = 5009", "network.master_port" },
 		{ "[0.0, 1.7, 0.5]", "[0.0, 1.7, 0.6]", "start" },
 	};

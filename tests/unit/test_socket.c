@@ -44,6 +44,7 @@ static void make_room(struct room *room, const char *address)
 	room->layout.network.master_port = free_port(address);
 	room->layout.network.mtu = 1500;
 	room->layout.network.ttl = 0;
+	room->layout.network.loop = true;
 	for (int i = 0; i < NODES; i++) {
 		room->nodes[i].address = (char *)address;
 		room->nodes[i].port = free_port(address);
@@ -229,6 +230,59 @@ static void broadcast_reaches_all(void **state)
 	group_over(LAYOUT_BROADCAST, "127.255.255.255");
 }
 
+/* What the layout says of the group is what the socket has. */
+static void group_as_the_layout_says(void **state)
+{
+	struct room room;
+	struct net *master;
+	int fds[2], value;
+	socklen_t len = sizeof value;
+
+	(void)state;
+	make_room(&room, "127.0.0.1");
+	room.layout.network.cast = LAYOUT_AUTO;
+	room.layout.network.group = (char *)"239.255.71.6";
+	room.layout.network.group_port = free_port("127.0.0.1");
+	room.layout.network.interface = (char *)"lo";
+	for (int i = 0; i < 2; i++) {
+		room.layout.network.loop = i;
+		room.layout.network.ttl = 3 + i;
+		assert_int_equal(net_open_master(&master, &room.layout), GR_OK);
+		net_fds(master, fds);
+		assert_int_equal(getsockopt(fds[0], IPPROTO_IP, IP_MULTICAST_LOOP, &value, &len), 0);
+		assert_int_equal(value, i);
+		assert_int_equal(getsockopt(fds[0], IPPROTO_IP, IP_MULTICAST_TTL, &value, &len), 0);
+		assert_int_equal(value, 3 + i);
+		net_close(&master);
+	}
+}
+
+/* With cast = "auto" a group that cannot be had is done without; with "multicast" it is not. */
+static void auto_does_without(void **state)
+{
+	struct room room;
+	struct net *net;
+
+	(void)state;
+	gr_log_set_level((enum gr_log_level)0);
+	make_room(&room, "127.0.0.1");
+	room.layout.network.group = (char *)"239.255.71.6";
+	room.layout.network.group_port = room.layout.network.master_port;
+	room.layout.network.interface = (char *)"lo";
+	/* Not a group: it cannot be joined. */
+	room.layout.network.group = (char *)"127.0.0.1";
+	room.layout.network.group_port = free_port("127.0.0.1");
+	room.layout.network.cast = LAYOUT_MULTICAST;
+	assert_int_equal(net_open_node(&net, &room.layout, 0), GR_ERR_IO);
+	room.layout.network.cast = LAYOUT_AUTO;
+	assert_int_equal(net_open_node(&net, &room.layout, 0), GR_OK);
+	assert_false(net_has_group(net));
+	net_close(&net);
+	room.layout.network.interface = (char *)"no-such-if0"; /* is a fault of the layout */
+	assert_int_equal(net_open_node(&net, &room.layout, 0), GR_ERR_CONFIG);
+	gr_log_set_level(GR_LOG_ERROR);
+}
+
 static void oversized_is_counted(void **state)
 {
 	static struct heard h;
@@ -312,6 +366,8 @@ int main(void)
 		cmocka_unit_test(unicast_ipv6),
 		cmocka_unit_test(multicast_reaches_all),
 		cmocka_unit_test(broadcast_reaches_all),
+		cmocka_unit_test(group_as_the_layout_says),
+		cmocka_unit_test(auto_does_without),
 		cmocka_unit_test(oversized_is_counted),
 		cmocka_unit_test(wrong_networks_are_refused),
 		cmocka_unit_test(addresses_as_text),

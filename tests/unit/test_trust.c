@@ -405,6 +405,25 @@ static void keys_differ(void **state)
 			assert_memory_not_equal(keys[i], keys[j], FDP_KEY_BYTES);
 }
 
+static void challenges_differ(void **state)
+{
+	uint8_t cluster[FDP_KEY_BYTES] = { 1 }, nonce[3][FDP_NONCE_BYTES] = { { 2 }, { 3 }, { 4 } };
+	uint8_t all[7][FDP_NONCE_BYTES];
+
+	(void)state;
+	fdp_challenge(cluster, 7, 0, 0, nonce[0], nonce[1], all[0]);
+	fdp_challenge(cluster, 8, 0, 0, nonce[0], nonce[1], all[1]);
+	fdp_challenge(cluster, 7, 1, 0, nonce[0], nonce[1], all[2]);
+	fdp_challenge(cluster, 7, 0, 1, nonce[0], nonce[1], all[3]);
+	fdp_challenge(cluster, 7, 0, 0, nonce[2], nonce[1], all[4]);
+	fdp_challenge(cluster, 7, 0, 0, nonce[0], nonce[2], all[5]);
+	cluster[0] = 2;
+	fdp_challenge(cluster, 7, 0, 0, nonce[0], nonce[1], all[6]);
+	for (unsigned i = 0; i < 7; i++)
+		for (unsigned j = 0; j < i; j++)
+			assert_memory_not_equal(all[i], all[j], FDP_NONCE_BYTES);
+}
+
 /* A key is there as long as it is good, and no longer. */
 static void keys_are_forgotten(void **state)
 {
@@ -497,7 +516,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(strangers_move_nothing), cmocka_unit_test(keys_differ),
 		cmocka_unit_test(keys_are_forgotten),	  cmocka_unit_test(for_one_node_alone),
-		cmocka_unit_test(beacons),
+		cmocka_unit_test(challenges_differ),	  cmocka_unit_test(beacons),
 	};
 
 	if (getenv("GROTTO_TEST_FILTER"))
