@@ -8,8 +8,8 @@
 static int64_t frame_time(const struct live_source *live, uint64_t frame, int64_t now_ns)
 {
 	if (!live->frame_clock)
-		return now_ns - live->start_ns;
-	return llrint((double)frame * 1e9 / (double)live->layout->rates.frame_hz);
+		return live->base_ns + now_ns - live->start_ns;
+	return live->base_ns + llrint((double)frame * 1e9 / (double)live->layout->rates.frame_hz);
 }
 
 static int next(struct frame_source *source, const struct frame_moment *moment,

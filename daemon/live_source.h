@@ -17,6 +17,7 @@ struct live_source {
 	struct master_state scene_state;
 	struct master_input input;
 	int64_t start_ns; /* zero of the scale, CLOCK_MONOTONIC; the master's to set when it starts */
+	int64_t base_ns; /* scene time at zero: what the master before had come to */
 	int64_t last_time_ns;
 	int64_t polled_ns; /* when the trackers were asked last, CLOCK_MONOTONIC */
 	bool frame_clock;

@@ -20,7 +20,9 @@ daemon_libgdaemon_a_SOURCES = \
 	daemon/priority.c daemon/priority.h \
 	daemon/privileges.c daemon/privileges.h \
 	daemon/send_queue.c daemon/send_queue.h \
+	daemon/saved_state.c daemon/saved_state.h \
 	daemon/socket.c daemon/socket.h \
+	daemon/state_keeper.c daemon/state_keeper.h \
 	daemon/swap_wait.c daemon/swap_wait.h \
 	daemon/trackers.c daemon/trackers.h
 daemon_libgdaemon_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(LIBCONFIG_CFLAGS) $(SYSTEMD_CFLAGS)
@@ -35,6 +37,7 @@ daemon_grotto_master_SOURCES = \
 	daemon/master.c daemon/master.h \
 	daemon/master_main.c \
 	daemon/master_record.c \
+	daemon/master_save.c \
 	daemon/master_report.c \
 	daemon/room_files.c daemon/room_files.h
 daemon_grotto_master_CFLAGS = $(DAEMON_CFLAGS)

@@ -443,6 +443,7 @@ static void on_second(void *ctx, int64_t now_ns)
 			      m->frame, m->frame - m->logged_frame, live, all);
 	m->logged_frame = m->frame;
 	log_send_failures(m, now_ns);
+	master_save(m);
 	if (m->recorder)
 		recorder_watch(m->recorder);
 	loop_timer_set(m->loop, m->second_timer, now_ns + GR_NS_PER_S);
@@ -548,6 +549,7 @@ void master_leave(struct master *master)
 	if (master->left)
 		return;
 	master->left = true;
+	master_save(master);
 	fdp_master_leave(master->fdp, gr_clock_now(&gr_clock_monotonic));
 	net_flush(master->net);
 	dropped_finish(&master->bad);

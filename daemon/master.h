@@ -25,6 +25,8 @@
 #include "base/log.h"
 
 
+struct state_keeper;
+
 struct master_params {
 	const struct layout *layout;
 	const struct scene_file *scene;
@@ -51,6 +53,8 @@ struct master {
 	struct notify notify;
 	struct recorder *recorder; /* NULL: nothing can be recorded */
 	struct frame_stats stats;
+	struct state_keeper *keeper; /* borrowed; NULL: nothing is left to a successor */
+	uint64_t saved_frame;        /* of the last that was left */
 
 	uint64_t session, frame; /* frame: the last begun */
 	int64_t start_ns, next_frame_ns;
@@ -81,6 +85,15 @@ int master_create(struct master **out, struct loop *loop, struct net *net,
 void master_use_recorder(struct master *master, struct recorder *recorder);
 /* Begins a recording: as recorder_start. */
 int master_record(struct master *master, const char *path, char *why, size_t size);
+/*
+ * Before the first frame of a live room: goes on from the state that a master left at
+ * `path`, if it is this room's and of the last minutes. A file of no use is told of, and left.
+ */
+void master_resume(struct master *master, const char *path);
+/* Borrowed; the state is put into it every second. NULL: no more. */
+void master_use_keeper(struct master *master, struct state_keeper *keeper);
+/* Puts the present state, if a frame has begun since the last. */
+void master_save(struct master *master);
 /* Says LEAVE to the nodes, once. */
 void master_leave(struct master *master);
 void master_destroy(struct master **master);

@@ -14,6 +14,8 @@
 #include "daemon/priority.h"
 #include "daemon/privileges.h"
 #include "daemon/room_files.h"
+#include "daemon/saved_state.h"
+#include "daemon/state_keeper.h"
 
 #include <math.h>
 #include <signal.h>
@@ -32,6 +34,7 @@ struct opened {
 	struct net *net;
 	struct master *master;
 	struct control *control;
+	struct state_keeper *keeper;
 };
 
 /* Of a file that need not be there yet. Caller frees; NULL without memory. */
@@ -148,6 +151,20 @@ static int open_recorder(struct opened *o)
 	return recorder_await(o->recorder) < 0 ? GR_ERR_CONFIG : GR_OK;
 }
 
+/* Starts a thread, likewise. */
+static int open_keeper(struct opened *o, const char *path)
+{
+	int r = path ? state_keeper_create(&o->keeper, path, SAVED_STATE_BYTES) : GR_OK;
+
+	if (r < 0)
+		gr_error("--state %s: %s", path, gr_result_name(r));
+	if (r < 0 || !path)
+		return r;
+	master_resume(o->master, path);
+	master_use_keeper(o->master, o->keeper);
+	return GR_OK;
+}
+
 static int open_all(struct opened *o, const struct master_options *options)
 {
 	struct master_params params;
@@ -167,6 +184,8 @@ static int open_all(struct opened *o, const struct master_options *options)
 	/* Root could write it; can who is left? */
 	if (r >= 0 && options->common.report && json_try(options->common.report) < 0)
 		r = GR_ERR_CONFIG;
+	if (r >= 0)
+		r = open_keeper(o, options->state);
 	return r < 0 ? r : open_recorder(o);
 }
 
@@ -209,6 +228,7 @@ static void close_all(struct opened *o)
 	control_destroy(&o->control);
 	master_destroy(&o->master);
 	recorder_destroy(&o->recorder); /* waits for the disk */
+	state_keeper_destroy(&o->keeper);
 	net_close(&o->net);
 	trackers_close(&o->trackers);
 	replay_source_destroy(&o->replay);

@@ -163,6 +163,7 @@ static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 static void serve_protocol(struct node *n)
 {
 	if (n->swap_ns != 0) {
+		swap_give_way();
 		fdp_node_swapped(n->fdp, n->report, n->swap_ns, gr_clock_now(&gr_clock_monotonic));
 		n->swap_ns = 0;
 		notify_feed(&n->notify, gr_clock_now(&gr_clock_monotonic));

@@ -168,6 +168,7 @@ static const struct option_spec master_specs[] = {
 	{ "from", OPTION_REAL, AT(master_options, from_s), "S", "replay from so many seconds after the recording began", 0, 10000000, NULL, NULL },
 	{ "recording", OPTION_INT, AT(master_options, recording), "N", "replay the Nth of the file [1]", 1, 1000000, NULL, NULL },
 	{ "other-layout", OPTION_FLAG, AT(master_options, other_layout), NULL, "the recording may be of another layout", 0, 0, NULL, NULL },
+	{ "state", OPTION_TEXT, AT(master_options, state), "FILE", "go on from the state left there, and leave it there every second", 0, 0, NULL, NULL },
 	{ "frames", OPTION_INT, AT(master_options, frames), "N", "end after N frames", 1, INT_MAX, NULL, NULL },
 	{ "frame-clock", OPTION_FLAG, AT(master_options, frame_clock), NULL, "frame N is at N / frame_hz seconds; as fast as the barrier allows", 0, 0, NULL, NULL },
 	{ "wait-all", OPTION_FLAG, AT(master_options, wait_all), NULL, "no frame before every node of the layout is there", 0, 0, NULL, NULL },
@@ -206,6 +207,10 @@ enum options_outcome master_options_parse(struct master_options *options, int ar
 	     options->recording != 1)) {
 		gr_error("--speed, --step, --from, --recording and --other-layout say how to replay; "
 			 "--replay FILE is missing");
+		return OPTIONS_WRONG;
+	}
+	if (outcome == OPTIONS_RUN && options->replay && options->state) {
+		gr_error("--state: a replay goes on from its recording alone; leave one of the two out");
 		return OPTIONS_WRONG;
 	}
 	if (outcome == OPTIONS_RUN && options->speed == 0)

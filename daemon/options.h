@@ -53,6 +53,7 @@ struct master_options {
 	double speed, from_s; /* of the replay */
 	int recording;
 	_Bool step, other_layout;
+	const char *state;   /* file in which the room's state is left for the next master, or NULL */
 	int frames;          /* 0: for ever */
 	_Bool frame_clock, wait_all;
 	int expect;

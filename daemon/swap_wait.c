@@ -6,6 +6,11 @@
 #include <sched.h>
 #include <time.h>
 
+void swap_give_way(void)
+{
+	sched_yield();
+}
+
 int64_t swap_wait(int64_t at_ns, int64_t busy_ns)
 {
 	const int64_t until_ns = at_ns - busy_ns;

@@ -15,5 +15,10 @@
  * machine then come to their time together, not one after the other.
  */
 int64_t swap_wait(int64_t at_ns, int64_t busy_ns);
+/*
+ * Between a swap and telling of it: another node of this machine whose swap is
+ * due comes first, for its wall is seen and our word is not.
+ */
+void swap_give_way(void);
 
 #endif

@@ -178,9 +178,17 @@ void fdp_master_announce_to(struct fdp_master *m, uint64_t nodes, enum fdp_kind 
 		fdp_master_announce(m, FDP_TO_GROUP, kind);
 		return;
 	}
-	for (size_t i = 0; i < m->params.node_count; i++)
-		if (nodes & BIT(i))
-			fdp_master_announce(m, (int)i, kind);
+	/*
+	 * In turns, so that each is the first now and then: its way is then no
+	 * longer than the way back, and that exchange is the one that its clock
+	 * is measured by.
+	 */
+	for (size_t i = 0; i < m->params.node_count; i++) {
+		const size_t node = (m->frame + i) % m->params.node_count;
+
+		if (nodes & BIT(node))
+			fdp_master_announce(m, (int)node, kind);
+	}
 }
 
 void fdp_master_write_state(struct fdp_master *m, struct fdp_letter *letter, enum fdp_kind kind,

@@ -34,6 +34,13 @@ tests_unit_test_socket_SOURCES = tests/unit/test_socket.c tests/unit/unit.h
 tests_unit_test_socket_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_socket_LDADD = $(DAEMON_PART_LIBS)
 
+check_PROGRAMS += tests/unit/test_saved_state
+TESTS += tests/unit/test_saved_state
+tests_unit_test_saved_state_SOURCES = tests/unit/test_saved_state.c tests/unit/unit.h
+tests_unit_test_saved_state_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
+tests_unit_test_saved_state_LDADD = daemon/libgdaemon.a $(PROTOCOL_LIBS) $(CONFIG_LIBS) \
+	$(CMOCKA_LIBS) -lpthread
+
 check_PROGRAMS += tests/unit/test_master_state
 TESTS += tests/unit/test_master_state
 tests_unit_test_master_state_SOURCES = tests/unit/test_master_state.c tests/unit/unit.h

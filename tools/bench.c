@@ -54,6 +54,23 @@ static int become_lattice(int count, char **sizes)
 	return GR_EXIT_RUNTIME;
 }
 
+/* The program checks its options itself. */
+static int become_barrier(char **words)
+{
+	char *path = programs_own("bench-barrier");
+
+	if (!path) {
+		fprintf(stderr, "grotto bench barrier: bench-barrier is neither beside this program nor in %s\n",
+			GROTTO_PKGLIBEXECDIR);
+		return GR_EXIT_RUNTIME;
+	}
+	words[0] = path;
+	execv(path, words);
+	fprintf(stderr, "grotto bench barrier: cannot start %s: %s\n", path, strerror(errno));
+	free(path);
+	return GR_EXIT_RUNTIME;
+}
+
 static int run_scenes(const struct bench_options *options, char *const *paths, int count)
 {
 	int result = bench_scenes(options, paths, (size_t)count);
@@ -90,15 +107,20 @@ int command_bench(int argc, char **argv)
 	};
 	const struct cli_table table = {
 		"grotto bench SCENE... [--methods LIST] [--out DIR]\n"
-		"       grotto bench lattice [CELLS...]",
+		"       grotto bench lattice [CELLS...]\n"
+		"       grotto bench barrier [--nodes N] [--rate HZ] [--frames N] [--runs N] [--multicast 1]",
 		"Draws scenes with each method of indirect light and prints what it costs on this\n"
 		"machine's OpenGL beside how far it is from path-traced truth.\n"
 		"lattice: propagates light through lattices of CELLS a side (32 64) with the thesis'\n"
-		"own kernel and with ours, and prints the time and error of each.",
+		"own kernel and with ours, and prints the time and error of each.\n"
+		"barrier: how far apart nodes that draw nothing leave the swap barrier, told and at a\n"
+		"time, in turns; in network namespaces where that is allowed, else over loopback.",
 		options, sizeof options / sizeof options[0]
 	};
 	int words;
 
+	if (argc > 1 && strcmp(argv[1], "barrier") == 0)
+		return become_barrier(argv + 1);
 	switch (cli_parse(&table, argc, argv, &words)) {
 	case CLI_HELP: return GR_EXIT_OK;
 	case CLI_WRONG: return GR_EXIT_CONFIG;

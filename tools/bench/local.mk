@@ -8,7 +8,7 @@ SURFEL_RIG_SOURCES = $(LATTICE_BENCH_SOURCES) tools/bench/surfel_rig.c tools/ben
 
 # Cost and error of the lattice; takes a minute, so not a test.
 # `grotto bench lattice` starts it.
-pkglibexec_PROGRAMS = tools/bench-lattice
+pkglibexec_PROGRAMS = tools/bench-lattice tools/bench-barrier
 tools_bench_lattice_SOURCES = tools/bench/lattice.c $(LATTICE_BENCH_SOURCES)
 tools_bench_lattice_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(EPOXY_CFLAGS)
 tools_bench_lattice_LDADD = $(RENDERER_LIBS)
@@ -38,3 +38,11 @@ pkglibexec_PROGRAMS += tools/bench-bake
 tools_bench_bake_SOURCES = tools/bench/bake.c tools/bench/atrium.c tools/bench/atrium.h $(LATTICE_ROOM_SOURCES)
 tools_bench_bake_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS)
 tools_bench_bake_LDADD = $(RENDERER_LIBS)
+
+# Exit skew of the barrier, told and at a time; `grotto bench barrier` starts it.
+tools_bench_barrier_SOURCES = \
+	tools/bench/barrier.c tools/bench/barrier.h \
+	tools/bench/barrier_ends.c \
+	tools/bench/barrier_net.c
+tools_bench_barrier_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) -pthread
+tools_bench_barrier_LDADD = daemon/libgdaemon.a $(PROTOCOL_LIBS) -lpthread
