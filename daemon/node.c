@@ -8,9 +8,11 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <sodium.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #define RECEIVE_MOST 256
 /* A master that waits for a slow node still speaks several times a second. */
@@ -67,6 +69,20 @@ static void note_cpu(struct node_counts *counts)
 		counts->first_cpu_ns = counts->last_cpu_ns;
 }
 
+/* For acceptance tests: survives our being killed, for the line is the kernel's at once. */
+static void log_swap(const struct node *n)
+{
+	char line[128];
+	int len;
+
+	if (n->params.swap_log < 0)
+		return;
+	len = snprintf(line, sizeof line, "%016" PRIx64 " %" PRIu64 " %016" PRIx64 " %" PRId64 "\n",
+		       n->drawn_session, n->swapped, n->drawn_hash, n->swap_ns);
+	if (write(n->params.swap_log, line, (size_t)len) != len)
+		gr_debug("swap log: %s", strerror(errno));
+}
+
 /* The swap itself comes first and alone; what it entails waits for receive to return. */
 static void swap(struct node *n, uint64_t frame)
 {
@@ -78,12 +94,13 @@ static void swap(struct node *n, uint64_t frame)
 	n->swapped = n->report = frame;
 	n->ready = n->due = 0;
 	n->counts.swapped++;
+	log_swap(n);
 	note_cpu(&n->counts);
 }
 
 static void told_to_swap(struct node *n, uint64_t frame, int64_t at_ns)
 {
-	if (n->ready != 0 && frame == n->ready && at_ns != 0) {
+	if (n->ready != 0 && frame == n->ready && at_ns != 0 && !n->swap.joined) {
 		n->due = frame;
 		n->due_ns = at_ns;
 	} else {
@@ -113,7 +130,8 @@ static void on_event(void *ctx, const struct fdp_node_event *event)
 	switch (event->kind) {
 	case FDP_NODE_JOINED:
 		n->counts.joined++;
-		n->master_gone = false;
+		n->master_gone = n->orphan = false;
+		node_swap_begin(&n->swap);
 		gr_notice("joined the master");
 		break;
 	case FDP_NODE_FRAME: apply_frame(n, event->frame, now_ns); break;
@@ -121,11 +139,13 @@ static void on_event(void *ctx, const struct fdp_node_event *event)
 	case FDP_NODE_REFUSED: refused(n, event->reason, now_ns); break;
 	case FDP_NODE_LOST:
 		n->counts.lost++;
-		n->master_gone = true;
-		gr_warning("nothing is heard from the master: the last picture stays, asking to join again");
+		n->master_gone = n->orphan = true;
+		gr_warning("%s: asking to join again",
+			   event->reason ? event->reason : "nothing is heard from the master");
 		break;
 	case FDP_NODE_MASTER_LEFT:
 		n->master_gone = true;
+		n->orphan = !n->params.once;
 		gr_notice("the master left%s", n->params.once ? "" : ": waiting for the next");
 		if (n->params.once)
 			loop_stop(n->loop);
@@ -259,6 +279,8 @@ static void start_drawing(struct node *n)
 	n->frame = n->next_frame;
 	n->drawing = n->wanted;
 	n->drawing_ns = n->wanted_ns;
+	n->drawn_hash = n->state_hash;
+	n->drawn_session = fdp_node_session(n->fdp);
 	n->wanted = n->ready = n->drawn = 0;
 	node_share_begin(&n->share, n->fdp, n->drawing, n->drawing_ns);
 	r = renderer_draw(n->renderer, &n->frame);
@@ -312,6 +334,12 @@ static void work(struct node *n)
 {
 	if (n->due != 0)
 		swap_in_time(n);
+	if (n->orphan && n->drawing == 0) {
+		n->orphan = false;
+		/* What the target holds is no frame's picture any more. */
+		if (node_swap_orphan(&n->swap))
+			n->drawn = n->ready = 0;
+	}
 	/* A picture that is to be saved must be read before the next is drawn over it. */
 	if (n->drawing == 0 && n->drawn != 0 && n->drawn == n->swapped && picture_due(n, n->drawn))
 		save_picture(n, n->drawn);
@@ -399,7 +427,9 @@ int node_create(struct node **out, struct loop *loop, struct net *net, struct ta
 	n->pictures = pictures;
 	render_frame_init(&n->next_frame, params->scene_file);
 	notify_init(&n->notify);
-	r = node_share_init(&n->share, renderer, params->scene_file, params->layout->node_count);
+	r = node_swap_init(&n->swap, target, &params->layout->swap);
+	if (r >= 0)
+		r = node_share_init(&n->share, renderer, params->scene_file, params->layout->node_count);
 	if (r >= 0)
 		r = create_protocol(n);
 	if (r >= 0)

@@ -20,6 +20,7 @@
 #include "daemon/histogram.h"
 #include "daemon/loop.h"
 #include "daemon/node_share.h"
+#include "daemon/node_swap.h"
 #include "daemon/notify.h"
 #include "daemon/pictures.h"
 #include "daemon/socket.h"
@@ -37,6 +38,7 @@ struct node_params {
 	uint8_t key[FDP_KEY_BYTES];
 	bool window;    /* the target is a window, which must be answered */
 	bool once;      /* end when the master ends or refuses */
+	int swap_log;   /* a line of each swap is written there; -1: nowhere */
 	uint64_t every; /* save pictures of frames that this divides; 0: the last alone */
 };
 
@@ -58,10 +60,12 @@ struct node {
 	struct pictures *pictures; /* NULL: none are saved */
 	struct fdp_node *fdp;
 	struct node_share share;
+	struct node_swap swap;
 	struct notify notify;
 	struct render_frame next_frame, frame; /* what is wanted; what is or was drawn */
 	struct node_counts counts;
 	uint64_t state_frame, state_hash; /* of the last state applied */
+	uint64_t drawn_hash, drawn_session; /* of the state that is or was drawn */
 
 	/* Frame numbers, 0 for none. drawn: whose picture the target holds. */
 	uint64_t wanted, drawing, drawn, ready, swapped, saved;
@@ -73,6 +77,7 @@ struct node {
 	int64_t swap_ns;          /* of a swap that is not yet reported; 0: none */
 	uint64_t report;          /* frame of that swap */
 	bool master_gone;         /* left, refused, or lost: nothing will come */
+	bool orphan;              /* the wall is to show what it shows without a master */
 	int status;               /* enum gr_exit, when the loop stops */
 
 	int tick_timer, second_timer, window_timer;

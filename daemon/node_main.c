@@ -14,9 +14,12 @@
 #include "renderer/gi/plan.h"
 
 #include <math.h>
+#include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define REPORT_MAX 65536
 #define WARM_UP_NS (60 * GR_NS_PER_S)
@@ -30,6 +33,7 @@ struct opened {
 	struct renderer *renderer;
 	struct pictures *pictures;
 	struct node *node;
+	int swap_log; /* -1: none */
 };
 
 static int find_node(struct opened *o, const char *name)
@@ -153,6 +157,17 @@ static int open_pictures(struct opened *o, const struct node_options *options,
 	return pictures_create(&o->pictures, &params);
 }
 
+static int open_swap_log(struct opened *o, const char *path)
+{
+	if (!path)
+		return GR_OK;
+	o->swap_log = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0640);
+	if (o->swap_log >= 0)
+		return GR_OK;
+	gr_error("--swap-log %s: %s", path, strerror(errno));
+	return GR_ERR_CONFIG;
+}
+
 /*
  * A software OpenGL computes in the thread that calls it: with a real-time
  * priority it would leave nothing of a processor to anybody else.
@@ -210,6 +225,8 @@ static int open_all(struct opened *o, const struct node_options *options)
 	if (r >= 0)
 		r = open_pictures(o, options, &renderer);
 	if (r >= 0)
+		r = open_swap_log(o, options->swap_log);
+	if (r >= 0)
 		take_priority(o, options->common.priority);
 	if (r >= 0)
 		r = privileges_drop(options->common.user, options->pictures);
@@ -219,6 +236,7 @@ static int open_all(struct opened *o, const struct node_options *options)
 	if (r < 0)
 		return r;
 	params.contents = room_files_contents(&o->files);
+	params.swap_log = o->swap_log;
 	memcpy(params.key, o->files.key, sizeof params.key);
 	if (renderer_plan(o->renderer))
 		fill_plan(&params, renderer_plan(o->renderer));
@@ -249,6 +267,8 @@ static void close_all(struct opened *o)
 {
 	node_destroy(&o->node);
 	pictures_destroy(&o->pictures);
+	if (o->swap_log >= 0)
+		close(o->swap_log);
 	renderer_destroy(&o->renderer);
 	target_destroy(&o->target);
 	net_close(&o->net);
@@ -259,7 +279,7 @@ static void close_all(struct opened *o)
 int main(int argc, char **argv)
 {
 	struct node_options options;
-	struct opened o = { 0 };
+	struct opened o = { .swap_log = -1 };
 	int r, status = GR_EXIT_CONFIG;
 
 	gr_log_init("grotto-node", GR_LOG_INFO);

@@ -184,6 +184,7 @@ static const struct option_spec node_specs[] = {
 	{ "once", OPTION_FLAG, AT(node_options, once), NULL, "end when the master ends or refuses", 0, 0, NULL, NULL },
 	{ "pictures", OPTION_TEXT, AT(node_options, pictures), "DIR", "save pictures there as NODE-FRAME.png", 0, 0, NULL, NULL },
 	{ "every", OPTION_INT, AT(node_options, every), "K", "of frames that K divides; the last always", 1, INT_MAX, NULL, NULL },
+	{ "swap-log", OPTION_TEXT, AT(node_options, swap_log), "FILE", "append a line of each swap: session, frame, hash of its state, time in ns", 0, 0, NULL, NULL },
 	{ "exr", OPTION_FLAG, AT(node_options, exr), NULL, "save the scene-linear radiance too, as OpenEXR", 0, 0, NULL, NULL },
 };
 

@@ -62,7 +62,7 @@ struct master_options {
 enum node_target_choice { NODE_TARGET_LAYOUT, NODE_TARGET_HEADLESS, NODE_TARGET_WINDOW, NODE_TARGET_FULLSCREEN };
 struct node_options {
 	struct common_options common;
-	const char *node, *pictures, *display;
+	const char *node, *pictures, *display, *swap_log;
 	int target; /* enum node_target_choice */
 	int gpu;    /* -2: the layout's */
 	int every;

@@ -389,6 +389,11 @@ enum fdp_node_state fdp_node_status(const struct fdp_node *n)
 	return n->status;
 }
 
+uint64_t fdp_node_session(const struct fdp_node *n)
+{
+	return n->gate.session;
+}
+
 uint64_t fdp_node_hash(const struct fdp_node *n)
 {
 	return n->hash;

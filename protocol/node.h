@@ -103,6 +103,8 @@ void fdp_node_leave(struct fdp_node *node, int64_t now_ns);
 enum fdp_node_state fdp_node_status(const struct fdp_node *node);
 /* Where the master's clock stands beside ours. */
 void fdp_node_clock(const struct fdp_node *node, int64_t now_ns, struct fdp_clock_estimate *out);
+/* Of the master that it is with; 0: none. */
+uint64_t fdp_node_session(const struct fdp_node *node);
 uint64_t fdp_node_hash(const struct fdp_node *node);
 void fdp_node_counters(const struct fdp_node *node, struct fdp_counters *out);
 

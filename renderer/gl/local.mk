@@ -1,6 +1,7 @@
 # renderer/gl, renderer/scene, renderer/image
 RENDERER_SOURCES += \
-	renderer/gl/mesh.c renderer/gl/mesh.h renderer/gl/program.c renderer/gl/program.h \
+	renderer/gl/mesh.c renderer/gl/mesh.h renderer/gl/pattern.c renderer/gl/pattern.h \
+	renderer/gl/swap_group.c renderer/gl/swap_group.h renderer/gl/program.c renderer/gl/program.h \
 	renderer/gl/shader_text.c renderer/gl/shader_text.h renderer/gl/shaders.h \
 	renderer/gl/target.c renderer/gl/target.h renderer/gl/target_egl.c \
 	renderer/gl/target_glfw.c renderer/gl/target_private.h \

@@ -4,6 +4,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "renderer/gl/swap_group.h"
 
 #include <epoxy/gl.h>
 #include <stdio.h>
@@ -197,6 +198,25 @@ void target_bind(const struct target *target, int eye, bool read)
 		else
 			glDrawBuffer(buffer);
 	}
+}
+
+int target_eyes(const struct target *target)
+{
+	return target->quad_buffer ? 2 : 1;
+}
+
+int target_barrier_join(struct target *target, char *why, size_t size)
+{
+	if (!target->ops->offscreen)
+		return swap_group_join(why, size);
+	snprintf(why, size, "it draws into no window");
+	return GR_ERR_UNSUPPORTED;
+}
+
+void target_barrier_leave(struct target *target)
+{
+	if (!target->ops->offscreen)
+		swap_group_leave();
 }
 
 void target_size(const struct target *target, int *width, int *height)

@@ -7,6 +7,7 @@
 #define GROTTO_RENDERER_GL_TARGET_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 enum target_kind { TARGET_HEADLESS, TARGET_WINDOW, TARGET_FULLSCREEN };
@@ -39,9 +40,17 @@ unsigned target_framebuffer(const struct target *target, int eye);
  * window chooses the eye's back buffer, which the framebuffer's name cannot say.
  */
 void target_bind(const struct target *target, int eye, bool read);
+/* Framebuffers or back buffers: 2 with quad_buffer. */
+int target_eyes(const struct target *target);
 void target_size(const struct target *target, int *width, int *height);
 /* Shows what was drawn. Headless: nothing but GL_FLUSH. False when the window was closed. */
 bool target_swap(struct target *target);
+/*
+ * From the next target_swap on the driver swaps with the windows of all machines
+ * that have joined (NV_swap_group). GR_OK, or GR_ERR_UNSUPPORTED with the reason.
+ */
+int target_barrier_join(struct target *target, char *why, size_t size);
+void target_barrier_leave(struct target *target);
 /* Takes what the window system says while nothing is shown. False when the window was closed. */
 bool target_poll(struct target *target);
 /* "llvmpipe (LLVM 15.0.6, 256 bits)", for log and summary. */

@@ -1,8 +1,9 @@
-/* ask SOCKET WORD...: one request to a control socket, the answer to stdout. */
+/* ask SOCKET WORD...: one request to a control socket, the answer to stdout. ask --now: CLOCK_MONOTONIC, ns. */
 #include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <time.h>
 #include <unistd.h>
 
 int main(int argc, char **argv)
@@ -13,6 +14,13 @@ int main(int argc, char **argv)
 	ssize_t n;
 	int fd;
 
+	if (argc == 2 && !strcmp(argv[1], "--now")) {
+		struct timespec ts;
+
+		clock_gettime(CLOCK_MONOTONIC, &ts);
+		printf("%lld%09ld\n", (long long)ts.tv_sec, ts.tv_nsec);
+		return 0;
+	}
 	if (argc < 3 || strlen(argv[1]) >= sizeof address.sun_path)
 		return 2;
 	strcpy(address.sun_path, argv[1]);

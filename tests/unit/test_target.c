@@ -3,6 +3,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "renderer/gl/pattern.h"
 #include "tests/unit/gl.h"
 
 #include <epoxy/gl.h>
@@ -23,6 +24,18 @@ static void clear_and_read(struct target *target, int eye, float red, uint8_t ex
 	assert_int_equal(glGetError(), GL_NO_ERROR);
 }
 
+/* No board, no barrier: said why, and nothing happens. */
+static void assert_no_barrier(struct target *target)
+{
+	char why[160] = "";
+
+	assert_int_equal(target_barrier_join(target, why, sizeof why), GR_ERR_UNSUPPORTED);
+	printf("# no barrier of the driver's: %s\n", why);
+	assert_true(why[0]);
+	target_barrier_leave(target);
+	assert_true(target_swap(target));
+}
+
 static void test_headless(void **state)
 {
 	struct target *target = gl_target_or_skip(37, 23);
@@ -38,8 +51,55 @@ static void test_headless(void **state)
 	clear_and_read(target, 0, 1.0f, 255);
 	assert_true(target_swap(target));
 	assert_true(target_poll(target));
+	assert_no_barrier(target);
 	target_destroy(&target);
 	assert_null(target);
+	target_destroy(&target);
+}
+
+static const uint8_t *pixel_at(const struct target *target, int eye, int x, int y)
+{
+	static uint8_t pixel[4];
+
+	target_bind(target, eye, true);
+	glReadPixels(x, y, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);
+	return pixel;
+}
+
+static void assert_color(const uint8_t *pixel, int red, int green, int blue)
+{
+	assert_int_equal(pixel[0], red);
+	assert_int_equal(pixel[1], green);
+	assert_int_equal(pixel[2], blue);
+}
+
+/* What a wall shows without a master: in both eyes, to the last pixel, and nothing stays set. */
+static void test_patterns(void **state)
+{
+	const struct target_params params = {
+		.kind = TARGET_HEADLESS, .width = 64, .height = 48, .gpu = -1, .quad_buffer = true,
+	};
+	struct target *target = gl_target_or_skip(3, 3);
+
+	(void)state;
+	target_destroy(&target);
+	assert_int_equal(target_create(&target, &params), GR_OK);
+	pattern_draw(target, PATTERN_TEST);
+	for (int eye = 0; eye < target_eyes(target); eye++) {
+		assert_color(pixel_at(target, eye, 0, 0), 255, 255, 255);
+		assert_color(pixel_at(target, eye, 63, 47), 255, 255, 255);
+		assert_color(pixel_at(target, eye, 2, 2), 0, 0, 0);
+		assert_color(pixel_at(target, eye, 17, 20), 255, 255, 255); /* bars */
+		assert_color(pixel_at(target, eye, 42, 20), 0, 0, 255);
+		assert_color(pixel_at(target, eye, 5, 5), eye ? 0 : 255, eye ? 255 : 0, eye ? 255 : 0);
+		assert_color(pixel_at(target, eye, 32, 2), 64, 64, 64);
+	}
+	assert_false(glIsEnabled(GL_SCISSOR_TEST));
+	pattern_draw(target, PATTERN_BLACK);
+	for (int eye = 0; eye < 2; eye++)
+		for (int x = 0; x < 64; x += 3)
+			assert_color(pixel_at(target, eye, x, x % 48), 0, 0, 0);
+	assert_int_equal(glGetError(), GL_NO_ERROR);
 	target_destroy(&target);
 }
 
@@ -113,6 +173,7 @@ static void test_window(void **state)
 		.kind = TARGET_WINDOW, .title = "grotto test", .width = 64, .height = 48,
 	};
 	struct target *target;
+	char why[160];
 	int width, height;
 
 	(void)state;
@@ -127,6 +188,10 @@ static void test_window(void **state)
 	assert_int_equal(height, 48);
 	assert_int_equal(target_framebuffer(target, 0), 0);
 	clear_and_read(target, 0, 1.0f, 255);
+	assert_true(target_swap(target));
+	if (target_barrier_join(target, why, sizeof why) < 0)
+		printf("# no barrier of the driver's: %s\n", why);
+	target_barrier_leave(target);
 	assert_true(target_swap(target));
 	assert_true(target_poll(target));
 	/* What the window manager's close button does. */
@@ -154,6 +219,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_headless),
 		cmocka_unit_test(test_headless_eyes),
+		cmocka_unit_test(test_patterns),
 		cmocka_unit_test(test_again),
 		cmocka_unit_test(test_refused),
 		cmocka_unit_test(test_no_display),
