@@ -154,8 +154,13 @@ static int open_recorder(struct opened *o)
 /* Starts a thread, likewise. */
 static int open_keeper(struct opened *o, const char *path)
 {
-	int r = path ? state_keeper_create(&o->keeper, path, SAVED_STATE_BYTES) : GR_OK;
+	int r;
 
+	if (path && o->replay) {
+		gr_info("--state: a replay goes on from its recording alone");
+		return GR_OK;
+	}
+	r = path ? state_keeper_create(&o->keeper, path, SAVED_STATE_BYTES) : GR_OK;
 	if (r < 0)
 		gr_error("--state %s: %s", path, gr_result_name(r));
 	if (r < 0 || !path)

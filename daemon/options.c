@@ -210,10 +210,6 @@ enum options_outcome master_options_parse(struct master_options *options, int ar
 			 "--replay FILE is missing");
 		return OPTIONS_WRONG;
 	}
-	if (outcome == OPTIONS_RUN && options->replay && options->state) {
-		gr_error("--state: a replay goes on from its recording alone; leave one of the two out");
-		return OPTIONS_WRONG;
-	}
 	if (outcome == OPTIONS_RUN && options->speed == 0)
 		options->speed = 1;
 	return outcome;

@@ -108,7 +108,7 @@ int saved_state_decode(const uint8_t *bytes, size_t len, struct saved_state *out
 		       char why[SAVED_STATE_REASON])
 {
 	struct gr_reader r = gr_reader(bytes, SAVED_STATE_BYTES - SUM_BYTES);
-	const char *refused;
+	const char *refused = "its length";
 	uint8_t expected[SUM_BYTES];
 	uint32_t version;
 

@@ -85,3 +85,13 @@ tests_fuzz_fuzz_control_CFLAGS = $(TEST_CFLAGS) $(CGLM_CFLAGS)
 tests_fuzz_fuzz_control_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
 tests_fuzz_fuzz_control_LDADD = daemon/libgdaemon.a $(PROTOCOL_LIBS) $(CONFIG_LIBS) $(SYSTEMD_LIBS) -lm
 endif
+
+# Fuzzer: see tests/protocol.mk.
+EXTRA_DIST += tests/fuzz/fuzz_saved_state.c tests/fuzz/corpus/saved_state/good
+if FUZZERS
+noinst_PROGRAMS += tests/fuzz/fuzz_saved_state
+tests_fuzz_fuzz_saved_state_SOURCES = tests/fuzz/fuzz_saved_state.c
+tests_fuzz_fuzz_saved_state_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
+tests_fuzz_fuzz_saved_state_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_saved_state_LDADD = daemon/libgdaemon.a $(PROTOCOL_LIBS) $(CONFIG_LIBS)
+endif

@@ -69,8 +69,8 @@ static struct barrier_room *make_room(const struct options *o)
 	room->layout.node_count = (size_t)o->nodes;
 	room->layout.network.mtu = 1500;
 	room->layout.network.master_port = BASE_PORT;
+	room->layout.network.cast = o->multicast ? LAYOUT_MULTICAST : LAYOUT_UNICAST;
 	if (o->multicast) {
-		room->layout.network.cast = LAYOUT_MULTICAST;
 		room->layout.network.group = strcpy(room->group, "239.192.77.1");
 		room->layout.network.group_port = BASE_PORT + 100;
 		room->layout.network.ttl = 1;
@@ -237,7 +237,7 @@ static int bench(const struct options *o)
 {
 	struct barrier_room *room = make_room(o);
 	const bool spaces = room && !o->loopback && barrier_net_hub();
-	pid_t ends[BARRIER_NODES_MOST + 1], spinners[2] = { 0, 0 };
+	pid_t ends[BARRIER_NODES_MOST + 1] = { 0 }, spinners[2] = { 0, 0 };
 	int status;
 
 	if (!room) {

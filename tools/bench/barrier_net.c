@@ -14,19 +14,23 @@
 
 extern char **environ;
 
-/* iproute2 with these words, up to NULL. */
-static bool ip(const char *first, ...)
+static bool ip(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* iproute2 with these words, which are ours and have no blanks in them. */
+static bool ip(const char *format, ...)
 {
-	char *words[WORDS_MOST + 2] = { (char *)"ip", (char *)first };
-	size_t count = 2;
+	char line[160], *words[WORDS_MOST + 2] = { (char *)"ip" }, *rest = NULL;
+	size_t count = 1;
 	va_list args;
 	int status;
 	pid_t pid;
 
-	va_start(args, first);
-	while (count < WORDS_MOST && (words[count] = va_arg(args, char *)))
-		count++;
+	va_start(args, format);
+	vsnprintf(line, sizeof line, format, args);
 	va_end(args);
+	for (char *word = strtok_r(line, " ", &rest); word && count <= WORDS_MOST;
+	     word = strtok_r(NULL, " ", &rest))
+		words[count++] = word;
 	if (posix_spawnp(&pid, "ip", NULL, NULL, words, environ) != 0 || waitpid(pid, &status, 0) < 0)
 		return false;
 	return WIFEXITED(status) && WEXITSTATUS(status) == 0;
@@ -38,10 +42,10 @@ bool barrier_net_hub(void)
 		fprintf(stderr, "no network namespaces (%s): loopback\n", strerror(errno));
 		return false;
 	}
-	if (ip("link", "add", "br0", "type", "bridge", NULL) && ip("link", "set", "br0", "up", NULL))
+	if (ip("link add br0 type bridge") && ip("link set br0 up"))
 		return true;
 	fprintf(stderr, "no bridge by ip(8): loopback\n");
-	ip("link", "set", "lo", "up", NULL);
+	ip("link set lo up");
 	return false;
 }
 
@@ -52,19 +56,11 @@ bool barrier_net_leave(void)
 
 bool barrier_net_connect(unsigned end, pid_t pid)
 {
-	char port[16], there[16];
-
-	snprintf(port, sizeof port, "p%u", end);
-	snprintf(there, sizeof there, "%d", (int)pid);
-	return ip("link", "add", port, "type", "veth", "peer", "name", "eth0", "netns", there, NULL) &&
-	       ip("link", "set", port, "master", "br0", NULL) && ip("link", "set", port, "up", NULL);
+	return ip("link add p%u type veth peer name eth0 netns %d", end, (int)pid) &&
+	       ip("link set p%u master br0", end) && ip("link set p%u up", end);
 }
 
 bool barrier_net_address(const char *address)
 {
-	char with_net[24];
-
-	snprintf(with_net, sizeof with_net, "%s/24", address);
-	return ip("address", "add", with_net, "dev", "eth0", NULL) &&
-	       ip("link", "set", "eth0", "up", NULL) && ip("link", "set", "lo", "up", NULL);
+	return ip("address add %s/24 dev eth0", address) && ip("link set eth0 up") && ip("link set lo up");
 }
