@@ -8,6 +8,7 @@ record_libgrecord_a_SOURCES = \
 	record/player.c record/player.h \
 	record/reader.c record/reader.h \
 	record/ring.c record/ring.h \
+	record/rules.c record/rules.h \
 	record/states.c record/states.h \
 	record/survey.c record/survey.h \
 	record/writer.c record/writer.h

@@ -41,6 +41,7 @@ static void note(struct surveyor *v, const struct record_entry *entry)
 		s->first_ns = entry->time_ns;
 	if (entry->time_ns > s->last_ns)
 		s->last_ns = entry->time_ns;
+	record_rules_note(&s->rules, entry);
 	switch (entry->kind) {
 	case RECORD_SAMPLE:
 		s->samples[entry->sample.tracker]++;
@@ -83,6 +84,7 @@ static void note_block(struct surveyor *v, struct record_reader *reader,
 	if (block->gap) {
 		v->survey.gaps++;
 		record_states_gap(&v->states);
+		record_rules_gap(&v->survey.rules);
 	}
 	if (block->head.kind == RECORD_END) {
 		v->survey.ended = true;

@@ -3,6 +3,7 @@
 #define GROTTO_RECORD_SURVEY_H
 
 #include "record/reader.h"
+#include "record/rules.h"
 
 struct record_survey {
 	struct record_session session;
@@ -21,6 +22,7 @@ struct record_survey {
 	uint64_t reports[RECORD_NODES];
 	uint64_t swaps, events[8]; /* by enum record_event_kind */
 	uint64_t lost, lost_frames; /* given up because the disk was too slow */
+	struct record_rules rules;
 	uint64_t gaps; /* places at which blocks are missing or damaged */
 };
 

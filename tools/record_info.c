@@ -96,6 +96,18 @@ static void print_events(const struct record_survey *s)
 	printf("%s; %" PRIu64 " swaps\n", any ? "" : " none", s->swaps);
 }
 
+static bool rules_kept(const struct record_rules *r)
+{
+	return r->different + r->early + r->back == 0;
+}
+
+static void print_rules(const struct record_rules *r)
+{
+	printf("  rules     %s: %" PRIu64 " answers of nodes with the frame's hash, %" PRIu64 " with another; %" PRIu64
+	       " swaps before all were ready or late, %" PRIu64 " out of order\n",
+	       rules_kept(r) ? "kept" : "BROKEN", r->equal, r->different, r->early, r->back);
+}
+
 static void print_end(const struct record_survey *s)
 {
 	if (s->lost)
@@ -126,6 +138,7 @@ static void print_survey(const struct info *info, const struct record_survey *s)
 	print_names("trackers", &s->session, false, s->samples, "samples");
 	print_names("nodes", &s->session, true, s->reports, "reports");
 	print_events(s);
+	print_rules(&s->rules);
 	print_end(s);
 }
 
@@ -155,7 +168,8 @@ static struct json_object *named_counts(const struct record_session *s, bool nod
 
 static void add_survey(struct info *info, const struct record_survey *s)
 {
-	struct json_object *o = json_object_new_object(), *events = json_object_new_object();
+	struct json_object *o = json_object_new_object(), *events = json_object_new_object(),
+			   *rules = json_object_new_object();
 	char text[65];
 
 	add_text(o, "grotto", s->session.grotto);
@@ -194,6 +208,11 @@ static void add_survey(struct info *info, const struct record_survey *s)
 		add_count(events, record_event_name((uint8_t)kind), s->events[kind]);
 	json_object_object_add(o, "events", events);
 	add_count(o, "samples_total", total(s->samples, RECORD_TRACKERS));
+	add_count(rules, "equal", s->rules.equal);
+	add_count(rules, "different", s->rules.different);
+	add_count(rules, "early", s->rules.early);
+	add_count(rules, "back", s->rules.back);
+	json_object_object_add(o, "rules", rules);
 	json_object_array_add(info->recordings, o);
 }
 
@@ -202,7 +221,8 @@ static void on_survey(void *ctx, const struct record_survey *survey)
 	struct info *info = ctx;
 
 	info->count++;
-	info->faults = info->faults || survey->frames_wrong || survey->gaps || survey->lost;
+	info->faults = info->faults || survey->frames_wrong || survey->gaps || survey->lost ||
+		       !rules_kept(&survey->rules);
 	if (info->recordings)
 		add_survey(info, survey);
 	else

@@ -32,6 +32,7 @@ record --info "$dir/room.rec" || fail "what a killed master left is called damag
 [ "$(fact '.frames_missing + .frames_wrong + .frames_unusable + .lost + .gaps')" -eq 0 ] || fail "damaged"
 [ "$(fact .events.joined)" -eq 2 ] && [ "$(fact .events.setting)" -eq 1 ] || fail "events: $(fact .events)"
 [ "$(fact .layout)" = loopback ] && [ "$(fact .scene)" = cell ] || fail "names: $(fact .layout)"
+fact .rules | jq -s -e '.[0].equal > 0 and .[0].different + .[0].early + .[0].back == 0' > /dev/null || fail "rules: $(fact .rules)"
 for n in $nodes; do
 	[ "$(fact ".reports.$n")" -ge "$((2 * said))" ] || fail "reports of $n: $(fact .reports)"
 done
