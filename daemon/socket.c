@@ -18,7 +18,6 @@
 
 #define NET_BATCH 16
 #define NET_GROUP LAYOUT_MAX_NODES /* the way to the group */
-#define NET_BUFFER (4 << 20)
 
 #define NET_STAMP_MOST_NS GR_NS_PER_S /* a datagram may have waited so long for us */
 #define NET_READ_MOST_NS 5000         /* between the readings of two clocks */
@@ -114,7 +113,7 @@ static void set_option(int fd, int level, int name, int value)
 
 static void set_buffers(int fd)
 {
-	int size = NET_BUFFER;
+	int size = NET_BUFFER_BYTES;
 
 	/* FORCE passes net.core.rmem_max, but needs CAP_NET_ADMIN. */
 	if (setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) < 0)

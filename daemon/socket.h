@@ -18,6 +18,7 @@
 #define NET_ADDRESS_TEXT 64
 #define NET_TO_ALL (-1)
 #define NET_TO_GROUP (-2)
+#define NET_BUFFER_BYTES (4 << 20) /* of each direction, where the system gives so much */
 
 /* Numeric IPv4 or IPv6 (with %scope); GR_ERR_FORMAT otherwise. */
 int net_address_parse(const char *text, uint16_t port, struct net_address *out);

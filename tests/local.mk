@@ -13,6 +13,7 @@ include $(top_srcdir)/tests/view.mk
 include $(top_srcdir)/tests/folder.mk
 include $(top_srcdir)/tests/daemon.mk
 include $(top_srcdir)/tests/tools.mk
+include $(top_srcdir)/tests/doctor.mk
 include $(top_srcdir)/tests/packaging.mk
 
 # For scripts/check, which runs some kinds alone.

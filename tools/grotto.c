@@ -17,6 +17,7 @@ static const struct command {
 	{ "bench", command_bench, "measure a part of grotto on this machine" },
 	{ "check", command_check, "check layout and scene files, report gaps between walls" },
 	{ "demo", command_demo, "run a whole cave on this machine, leave its pictures and figures" },
+	{ "doctor", command_doctor, "look whether this machine is fit for its part in a room" },
 	{ "key", command_key, "make a cluster key" },
 	{ "record", command_record, "record a running room, look at recordings" },
 	{ "reference", command_reference, "path-trace what the renderer should show" },

@@ -27,6 +27,7 @@ tools_grotto_SOURCES = \
 	tools/demo_room.c \
 	tools/demo_run.c \
 	tools/demo_summary.c \
+	tools/doctor.c \
 	tools/key.c \
 	tools/record.c tools/record_export.c tools/record_info.c tools/record_info.h \
 	tools/reference.c tools/reference.h \
@@ -39,4 +40,4 @@ tools_grotto_SOURCES = \
 tools_grotto_CPPFLAGS = $(AM_CPPFLAGS) -DGROTTO_SBINDIR='"$(sbindir)"' \
 	-DGROTTO_PKGLIBEXECDIR='"$(pkglibexecdir)"'
 tools_grotto_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(JSONC_CFLAGS)
-tools_grotto_LDADD = tools/libgbench.a tools/libgtools.a $(RECORD_LIBS) $(RENDERER_LIBS) $(PROTOCOL_LIBS) $(CONFIG_LIBS) $(JSONC_LIBS)
+tools_grotto_LDADD = tools/libgbench.a $(DOCTOR_LIBS) $(RECORD_LIBS) $(RENDERER_LIBS) $(PROTOCOL_LIBS) $(CONFIG_LIBS) $(JSONC_LIBS)
