@@ -139,8 +139,13 @@ void check_multicast(struct doctor *d)
 		findings_add(&d->found, finding(FINDING_OK, "the room does without: cast = \"unicast\""));
 		return;
 	}
-	if (network->cast == LAYOUT_MULTICAST) {
-		findings_add(&d->found, try_membership(network));
+	if (network->cast != LAYOUT_BROADCAST) {
+		struct finding joined = try_membership(network);
+
+		/* The room then goes on by unicast. */
+		if (network->cast == LAYOUT_AUTO && joined.level == FINDING_FAIL)
+			joined.level = FINDING_WARN;
+		findings_add(&d->found, joined);
 		if (sysfile_read(d->root, igmp, sizeof igmp, "/proc/net/igmp") < 0)
 			igmp[0] = '\0';
 		if (network->interface)

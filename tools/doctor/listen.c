@@ -94,7 +94,7 @@ int doctor_ask_group(const struct layout *layout, uint64_t *out_answered)
 	randombytes_buf(l.nonce, sizeof l.nonce);
 	echo_make(bytes, len, l.nonce);
 	for (int i = 0; i < GROUP_QUESTIONS; i++) {
-		net_send(l.net, -1, bytes, len);
+		net_send(l.net, NET_TO_GROUP, bytes, len);
 		net_flush(l.net);
 		serve(&l, gr_clock_now(&gr_clock_monotonic) + GROUP_PATIENCE_NS / GROUP_QUESTIONS, note_answer);
 	}
