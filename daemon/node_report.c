@@ -1,6 +1,5 @@
 #include "daemon/node.h"
 
-#include "base/clock.h"
 #include "base/result.h"
 #include "daemon/json.h"
 
@@ -114,18 +113,13 @@ static void write_renderer(struct json *json, const struct node *n)
 
 static void write_swap(struct json *json, const struct node *n)
 {
-	struct fdp_clock_estimate clock;
-
-	fdp_node_clock(n->fdp, gr_clock_now(&gr_clock_monotonic), &clock);
 	json_open(json, "swap", '{');
 	json_u64(json, "scheduled", n->counts.scheduled);
 	json_u64(json, "told", n->counts.swapped - n->counts.scheduled);
 	json_f64(json, "off_p50_us", histogram_percentile(&n->swap_off, 0.5));
 	json_f64(json, "off_p99_us", histogram_percentile(&n->swap_off, 0.99));
 	json_i64(json, "off_max_us", n->swap_off.max_us);
-	json_bool(json, "clock_known", clock.known);
-	json_f64(json, "clock_error_us", (double)clock.error_ns * 1e-3);
-	json_f64(json, "clock_skew_ppm", clock.skew_ppm);
+	json_bool(json, "driver_barrier", n->swap.hardware);
 	json_close(json, '}');
 }
 

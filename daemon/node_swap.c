@@ -50,6 +50,7 @@ bool node_swap_orphan(struct node_swap *swap)
 	if (swap->orphaned || swap->orphan == LAYOUT_ORPHAN_HOLD)
 		return false;
 	swap->orphaned = true;
+	gr_notice("the wall shows %s", swap->orphan == LAYOUT_ORPHAN_TEST ? "a test pattern" : "black");
 	pattern_draw(swap->target, swap->orphan == LAYOUT_ORPHAN_TEST ? PATTERN_TEST : PATTERN_BLACK);
 	target_swap(swap->target);
 	return true;

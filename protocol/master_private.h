@@ -31,6 +31,7 @@
 #define FDP_GROUP_PATIENCE_NS INT64_C(1000000000) /* for a node to hear the group before it is named */
 #define FDP_SAID_FRAMES 64 /* SWAP says which slices there are until so long after the last change */
 
+#define FDP_SWAPPED_MOST_NS INT64_C(10000000000) /* a swap is told of within this */
 #define FDP_PATHS 64 /* ways of a SWAP that its lead is measured by */
 
 struct fdp_peer {

@@ -78,17 +78,29 @@ static void on_ready(struct fdp_master *m, unsigned node, const struct fdp_repor
 	fdp_master_finish_if_over(m, now_ns);
 }
 
-static void note_swap(struct fdp_peer *peer, const struct fdp_report *report, int64_t now_ns)
+/* By our clock; 0: its clock is not known, or what it says is no time of late. */
+static int64_t swap_time(const struct fdp_peer *peer, int64_t swap_ns, int64_t now_ns)
 {
 	struct fdp_clock_estimate estimate;
+	int64_t ours_ns, ago_ns;
+
+	fdp_clock_estimate(&peer->clock, now_ns, &estimate);
+	ours_ns = fdp_clock_to_ours(&peer->clock, swap_ns);
+	if (!estimate.known || __builtin_sub_overflow(now_ns, ours_ns, &ago_ns) ||
+	    ago_ns < -FDP_SWAPPED_MOST_NS || ago_ns > FDP_SWAPPED_MOST_NS)
+		return 0;
+	return ours_ns;
+}
+
+static void note_swap(struct fdp_peer *peer, const struct fdp_report *report, int64_t now_ns)
+{
 
 	if (report->swapped_count <= peer->status.swapped)
 		return;
 	peer->status.swapped = report->swapped_count;
 	peer->status.swapped_frame = report->swapped_frame;
 	peer->status.swap_local_ns = report->swap_ns;
-	fdp_clock_estimate(&peer->clock, now_ns, &estimate);
-	peer->status.swap_ns = estimate.known ? fdp_clock_to_ours(&peer->clock, report->swap_ns) : 0;
+	peer->status.swap_ns = swap_time(peer, report->swap_ns, now_ns);
 	fdp_master_note_path(peer, report->path_ns);
 }
 

@@ -62,9 +62,11 @@ tests_loopback_forger_LDADD = $(PROTOCOL_LIBS)
 dist_check_SCRIPTS += tests/loopback/forged.sh
 TESTS += tests/loopback/forged.sh
 dist_check_SCRIPTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh \
-	tests/loopback/group.sh tests/loopback/share_survives.sh tests/loopback/kills.sh
+	tests/loopback/group.sh tests/loopback/share_survives.sh tests/loopback/kills.sh \
+	tests/loopback/barrier.sh
 TESTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh \
-	tests/loopback/group.sh tests/loopback/share_survives.sh tests/loopback/kills.sh
+	tests/loopback/group.sh tests/loopback/share_survives.sh tests/loopback/kills.sh \
+	tests/loopback/barrier.sh
 EXTRA_DIST += tests/loopback/room.sh tests/loopback/room.cave.in tests/loopback/cell.scene
 
 check_PROGRAMS += tests/unit/test_trackers

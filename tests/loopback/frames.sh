@@ -34,7 +34,9 @@ for f in 000040 000080 000100; do
 done
 [ "$(ls "$dir/pictures" | wc -l)" -eq 6 ] || fail "other pictures than asked for"
 [ ! -e "$dir/control" ] || fail "the control socket was left behind"
-for key in skew_us commit_to_applied_us swap_sent_to_last_swap_us commit_to_last_swap_us; do
+scheduled=$(grep -o '"skew_scheduled_us":{"count":[0-9]*' "$dir/master.json" | grep -o '[0-9]*$')
+[ "${scheduled:-0}" -gt 0 ] || fail "no frame was swapped at a time"
+for key in skew_us skew_told_us skew_scheduled_us commit_to_applied_us swap_sent_to_last_swap_us commit_to_last_swap_us; do
 	echo "# $key $(grep -o "\"$key\":{[^}]*}" "$dir/master.json" | cut -d: -f2-)"
 done
 echo "ok: 4 nodes, 100 frames"

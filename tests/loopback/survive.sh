@@ -3,6 +3,7 @@
 # the room goes on. At the end SIGTERM, in the middle of frames, ends all in order.
 . "${srcdir:-.}/tests/loopback/room.sh"
 make_room "32, 24" 2000.0
+echo 'swap = { without_master = "test"; };' >>"$dir/room.cave"
 need_gl
 
 start_master --frame-clock --wait-all
@@ -40,12 +41,16 @@ for n in $nodes; do
 	[ "$(node_field "$dir/status.json" $n state)" = live ] || fail "$n did not join the new master"
 	[ "$(node_field "$dir/status.json" $n mismatches)" -eq 0 ] || fail "$n held another state"
 done
+for n in $nodes; do
+	! says $n "the wall shows" || fail "$n did not hold its picture while the master was started again"
+done
 echo "ok: all nodes joined a restarted master"
 
 kill -TERM "$master_pid"
 ends "$master_pid" 0 master
 for n in $nodes; do
 	wait_for 60 says $n "the master left"
+	wait_for 60 says $n "the wall shows a test pattern"
 	eval "kill -TERM \$pid_$n"
 	eval "ends \$pid_$n 0 $n"
 done
