@@ -95,6 +95,29 @@ static inline float gr_read_f32(struct gr_reader *r)
 	return value;
 }
 
+/*
+ * A number in as few bytes as it needs: seven bits each, the lowest first, the
+ * top bit of all but the last set. At most 10 bytes; there is one form of each
+ * number, and any other is a failure.
+ */
+#define GR_VARINT_MOST 10
+static inline uint64_t gr_read_varint(struct gr_reader *r)
+{
+	uint64_t value = 0;
+
+	for (unsigned shift = 0; shift < 70; shift += 7) {
+		const uint8_t byte = gr_read_u8(r);
+
+		if (!r->ok || (shift == 63 && byte > 1) || (shift && !byte))
+			break;
+		value |= (uint64_t)(byte & 0x7f) << shift;
+		if (!(byte & 0x80))
+			return value;
+	}
+	r->ok = false;
+	return 0;
+}
+
 static inline uint8_t *gr_write_room(struct gr_writer *w, size_t n)
 {
 	uint8_t *p;
@@ -146,6 +169,24 @@ static inline void gr_write_u64(struct gr_writer *w, uint64_t v)
 {
 	gr_write_u32(w, (uint32_t)v);
 	gr_write_u32(w, (uint32_t)(v >> 32));
+}
+
+static inline void gr_write_varint(struct gr_writer *w, uint64_t v)
+{
+	for (; v >= 0x80; v >>= 7)
+		gr_write_u8(w, (uint8_t)(v | 0x80));
+	gr_write_u8(w, (uint8_t)v);
+}
+
+/* Small numbers of either sign as small ones without. */
+static inline uint64_t gr_zigzag(int64_t v)
+{
+	return (uint64_t)v << 1 ^ (v < 0 ? UINT64_MAX : 0);
+}
+
+static inline int64_t gr_unzigzag(uint64_t v)
+{
+	return (int64_t)(v >> 1 ^ (v & 1 ? UINT64_MAX : 0));
 }
 
 static inline void gr_write_f32(struct gr_writer *w, float v)

@@ -76,6 +76,8 @@ static void write_node(struct json *json, const struct master *m, size_t i, int6
 	json_u64(json, "ready", peer.ready);
 	json_u64(json, "swapped", peer.swapped);
 	json_u64(json, "missed", peer.missed);
+	json_u64(json, "lost", peer.lost);
+	json_f64(json, "answer_us", (double)peer.answer_ns * 1e-3);
 	json_u64(json, "mismatches", peer.mismatches);
 	json_u64(json, "swapped_frame", peer.swapped_frame);
 	json_f64(json, "ready_after_ms", (double)peer.ready_after_ns * 1e-6);

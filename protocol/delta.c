@@ -12,19 +12,21 @@ long param_delta_encode(const struct param_state *state, uint64_t base, uint8_t 
 {
 	struct gr_writer w = gr_writer(bytes, size);
 	uint16_t count = 0;
+	int last_id = -1;
 
 	for (int i = 0; i < PARAM_COUNT; i++)
 		count = (uint16_t)(count + (state->version[i] > base));
-	gr_write_u64(&w, base);
-	gr_write_u16(&w, count);
+	gr_write_varint(&w, base);
+	gr_write_varint(&w, count);
 	for (int i = 0; i < PARAM_COUNT; i++) {
 		enum param_id id = (enum param_id)i;
 		uint8_t *room;
 
 		if (state->version[i] <= base)
 			continue;
-		gr_write_u16(&w, (uint16_t)i);
-		gr_write_u64(&w, state->version[i]);
+		gr_write_varint(&w, (uint64_t)(i - last_id - 1));
+		gr_write_varint(&w, state->version[i] - base);
+		last_id = i;
 		room = gr_write_room(&w, param_info(id)->size);
 		if (room)
 			param_encode_values(id, param_get(state, id), room);
@@ -36,8 +38,8 @@ int param_delta_base(const uint8_t *bytes, size_t len, uint64_t *out_base)
 {
 	struct gr_reader r = gr_reader(bytes, len);
 
-	*out_base = gr_read_u64(&r);
-	gr_read_u16(&r);
+	*out_base = gr_read_varint(&r);
+	gr_read_varint(&r);
 	return r.ok ? GR_OK : GR_ERR_FORMAT;
 }
 
@@ -52,10 +54,10 @@ static bool read_entry(struct gr_reader *r, const struct param_state *state, uin
 		       int last_id, struct entry *out)
 {
 	uint64_t values[(PARAM_VALUE_BYTES + 7) / 8];
-	unsigned id = gr_read_u16(r);
-	uint64_t version = gr_read_u64(r);
+	const uint64_t step = gr_read_varint(r), since = gr_read_varint(r), version = base + since;
+	const uint64_t id = (uint64_t)(last_id + 1) + step;
 
-	if (!r->ok || id >= PARAM_COUNT || (int)id <= last_id || version <= base)
+	if (!r->ok || step >= PARAM_COUNT || id >= PARAM_COUNT || !since || version < base)
 		return false;
 	/* Base 0 starts from the defaults; any other goes forward from what is held. */
 	if (base && version < state->version[id])
@@ -72,8 +74,7 @@ static bool read_entry(struct gr_reader *r, const struct param_state *state, uin
 int param_delta_apply(struct param_state *state, const uint8_t *bytes, size_t len)
 {
 	struct gr_reader r = gr_reader(bytes, len);
-	uint64_t base = gr_read_u64(&r);
-	unsigned count = gr_read_u16(&r);
+	const uint64_t base = gr_read_varint(&r), count = gr_read_varint(&r);
 	struct gr_reader first;
 	struct entry e;
 	int last_id = -1;
@@ -81,7 +82,7 @@ int param_delta_apply(struct param_state *state, const uint8_t *bytes, size_t le
 	if (!r.ok || count > PARAM_COUNT)
 		return GR_ERR_FORMAT;
 	first = r;
-	for (unsigned i = 0; i < count; i++) {
+	for (uint64_t i = 0; i < count; i++) {
 		if (!read_entry(&r, state, base, last_id, &e))
 			return GR_ERR_FORMAT;
 		last_id = (int)e.id;
@@ -94,7 +95,7 @@ int param_delta_apply(struct param_state *state, const uint8_t *bytes, size_t le
 	}
 	r = first;
 	last_id = -1;
-	for (unsigned i = 0; i < count && read_entry(&r, state, base, last_id, &e); i++) {
+	for (uint64_t i = 0; i < count && read_entry(&r, state, base, last_id, &e); i++) {
 		last_id = (int)e.id;
 		param_decode_values(e.id, e.bytes, param_values(state, e.id));
 		state->version[e.id] = e.version;

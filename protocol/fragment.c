@@ -75,6 +75,10 @@ enum fdp_fragment_result fdp_reassembly_add(struct fdp_reassembly *r,
 	    h->packed != r->packed || h->count != r->count || chunk != r->chunk)
 		return FDP_FRAGMENT_BAD;
 	bit = UINT64_C(1) << h->index % 64;
+	if (!h->again && !(r->first[h->index / 64] & bit)) {
+		r->first[h->index / 64] |= bit;
+		r->firsts++;
+	}
 	if (r->got[h->index / 64] & bit)
 		return FDP_FRAGMENT_AGAIN;
 	memcpy(r->bytes + (size_t)r->chunk * h->index, payload, h->payload_len);

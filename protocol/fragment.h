@@ -29,9 +29,11 @@ struct fdp_reassembly {
 	uint32_t message_len, plain_len;
 	uint32_t chunk;
 	uint16_t count, have;
+	uint16_t firsts;   /* of count, those whose first copy came */
 	uint16_t reported; /* missing ones below this index were told by _gap */
 	bool packed;
 	uint64_t got[FDP_FRAGMENTS_MAX / 64];
+	uint64_t first[FDP_FRAGMENTS_MAX / 64]; /* first copies that came */
 	uint8_t bytes[FDP_MESSAGE_MAX];
 };
 
@@ -46,6 +48,11 @@ enum fdp_fragment_result {
 enum fdp_fragment_result fdp_reassembly_add(struct fdp_reassembly *r,
 					    const struct fdp_header *header,
 					    const uint8_t *payload);
+/* Fragments of the message held of which no first copy has come so far. */
+static inline unsigned fdp_reassembly_lost(const struct fdp_reassembly *r)
+{
+	return r->message ? (unsigned)r->count - r->firsts : 0;
+}
 void fdp_reassembly_reset(struct fdp_reassembly *r);
 static inline bool fdp_reassembly_open(const struct fdp_reassembly *r)
 {

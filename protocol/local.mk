@@ -24,6 +24,7 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/peer.c protocol/peer.h \
 	protocol/replay.h \
 	protocol/share.c protocol/share.h \
+	protocol/trip.h \
 	protocol/session_keys.c protocol/session_keys.h \
 	protocol/wire.c protocol/wire.h
 protocol_libgprotocol_a_CFLAGS = $(AM_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS)

@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-_Static_assert(FDP_STATE_HEAD_BYTES + PARAM_DELTA_MAX <= FDP_MESSAGE_MAX,
+_Static_assert(FDP_STATE_HEAD_MAX + PARAM_DELTA_MAX <= FDP_MESSAGE_MAX,
 	       "the whole state must fit into one message");
-_Static_assert(FDP_STATE_HEAD_BYTES + PARAM_DELTA_MAX <=
+_Static_assert(FDP_STATE_HEAD_MAX + PARAM_DELTA_MAX <=
 		       FDP_FRAGMENTS_MAX * (FDP_DATAGRAM_MIN - FDP_HEADER_BYTES),
 	       "the whole state must fit into the fragments of the smallest datagrams");
 _Static_assert(FDP_HEADER_BYTES + FDP_BODY_MAX <= FDP_DATAGRAM_MIN,
@@ -153,9 +153,15 @@ void fdp_master_destroy(struct fdp_master **master)
 	free(m);
 }
 
+static uint32_t clamp_us(int64_t ns)
+{
+	return ns / 1000 > UINT32_MAX ? UINT32_MAX : (uint32_t)(ns / 1000);
+}
+
 void fdp_master_announce(struct fdp_master *m, int to, enum fdp_kind kind)
 {
-	const bool delta = m->delta.number && m->delta.frame == m->frame;
+	/* Who is told to swap needs no delta any more: the next one heals it. */
+	const bool delta = kind == FDP_PROBE && m->delta.number && m->delta.frame == m->frame;
 	struct fdp_announce a = {
 		.frame = m->frame,
 		.swapped = m->swapped,
@@ -166,18 +172,16 @@ void fdp_master_announce(struct fdp_master *m, int to, enum fdp_kind kind)
 		.flags = fdp_master_twice(m) ? FDP_TWICE : 0,
 	};
 
+	if (fdp_master_twice(m))
+		a.wait_us = clamp_us(fdp_master_wait(m, a.live));
 	fdp_master_say_slices(m, kind, &a);
 	fdp_master_say_time(m, to, &a);
 	fdp_outbox_send(&m->out, to, kind,
 			fdp_announce_encode(&a, fdp_outbox_body(&m->out), FDP_BODY_MAX));
 }
 
-void fdp_master_announce_to(struct fdp_master *m, uint64_t nodes, enum fdp_kind kind)
+static void announce_to_each(struct fdp_master *m, uint64_t nodes, enum fdp_kind kind)
 {
-	if (m->group && nodes & (nodes - 1)) {
-		fdp_master_announce(m, FDP_TO_GROUP, kind);
-		return;
-	}
 	/*
 	 * In turns, so that each is the first now and then: its way is then no
 	 * longer than the way back, and that exchange is the one that its clock
@@ -191,21 +195,30 @@ void fdp_master_announce_to(struct fdp_master *m, uint64_t nodes, enum fdp_kind 
 	}
 }
 
+void fdp_master_announce_to(struct fdp_master *m, uint64_t nodes, enum fdp_kind kind)
+{
+	if (m->group && nodes & (nodes - 1))
+		fdp_master_announce(m, FDP_TO_GROUP, kind);
+	else
+		announce_to_each(m, nodes, kind);
+}
+
 void fdp_master_write_state(struct fdp_master *m, struct fdp_letter *letter, enum fdp_kind kind,
 			    uint64_t base)
 {
+	const bool chained = base && base == m->previous_frame;
 	const struct fdp_state_head head = {
 		.frame = m->frame,
 		.previous_frame = m->previous_frame,
 		.hash = m->hash,
-		.previous_hash = m->previous_hash,
+		.previous_hash = chained ? 0 : m->previous_hash,
 		.live = fdp_master_mask(m, fdp_peer_counts),
 		.present = fdp_master_mask(m, fdp_peer_present),
-		.flags = fdp_master_twice(m) ? FDP_TWICE : 0,
+		.flags = (fdp_master_twice(m) ? FDP_TWICE : 0u) | (chained ? FDP_CHAINED : 0u),
 		.shared = m->share.since ? m->shared : 0,
 		.shared_since = m->share.since,
 	};
-	const size_t at = fdp_state_head_encode(&head, letter->bytes, FDP_STATE_HEAD_BYTES);
+	const size_t at = fdp_state_head_encode(&head, letter->bytes, FDP_STATE_HEAD_MAX);
 	/* Cannot fail: the static assertions above. */
 	const long len = param_delta_encode(m->state, base, letter->bytes + at, PARAM_DELTA_MAX);
 
@@ -231,7 +244,7 @@ static void send_delta(struct fdp_master *m, int to)
 {
 	fdp_outbox_post(&m->out, to, &m->delta);
 	if (fdp_master_twice(m))
-		fdp_outbox_fragment(&m->out, to, &m->delta, m->delta.count - 1u);
+		fdp_outbox_again(&m->out, to, &m->delta, m->delta.count - 1u);
 }
 
 static void send_delta_to(struct fdp_master *m, uint64_t live)
@@ -287,11 +300,11 @@ int fdp_master_begin(struct fdp_master *m, const struct param_state *state, uint
 	m->frame = frame;
 	remember_hash(m);
 	m->loss -= m->loss > 0;
+	m->asked_ns = now_ns;
 	promote_joiners(m);
 	live = fdp_master_mask(m, fdp_peer_counts);
 	m->underway = true;
 	fdp_barrier_start(&m->barrier, frame, live, now_ns, m->params.deadline_ns);
-	m->probe_at = now_ns + m->params.probe_ns;
 	m->probes = 0;
 	fdp_master_choose_way(m, live, now_ns);
 	fdp_master_begin_repairs(m);
@@ -357,6 +370,8 @@ void fdp_master_finish_if_over(struct fdp_master *m, int64_t now_ns)
 	m->swap_ns = swap.swap_ns = fdp_master_swap_time(m, live, now_ns);
 	if (live) {
 		fdp_master_announce_to(m, live, FDP_SWAP);
+		if (count_bits(live) == m->params.node_count)
+			m->all_told_ns = now_ns;
 		if (fdp_master_twice(m))
 			fdp_master_announce_to(m, live, FDP_SWAP);
 	}
@@ -382,24 +397,44 @@ static void tend_joiners(struct fdp_master *m, int64_t now_ns)
 	refresh_snapshots(m, now_ns);
 }
 
+/* When who has not acknowledged is asked; INT64_MAX: all have. */
+static int64_t ask_at(const struct fdp_master *m)
+{
+	const uint64_t unacked = fdp_barrier_unacked(&m->barrier);
+	const unsigned doublings = m->probes < 4 ? 0 : m->probes < 8 ? m->probes - 4 : 4;
+	int64_t wait_ns, steady_ns;
+
+	if (!unacked)
+		return INT64_MAX;
+	wait_ns = fdp_master_wait(m, unacked) << doublings;
+	steady_ns = fdp_backoff(m->params.probe_ns, m->probes);
+	return m->asked_ns + (wait_ns < steady_ns ? wait_ns : steady_ns);
+}
+
 void fdp_master_tick(struct fdp_master *m, int64_t now_ns)
 {
 	m->now_ns = now_ns;
 	tend_joiners(m, now_ns);
 	if (now_ns >= m->keepalive_at) {
 		m->keepalive_at = now_ns + FDP_KEEPALIVE_NS;
-		fdp_master_announce(m, fdp_master_all(m), FDP_PROBE);
+		/* Each SWAP says as much. */
+		if (!m->all_told_ns || now_ns - m->all_told_ns > FDP_KEEPALIVE_NS / 2)
+			fdp_master_announce(m, fdp_master_all(m), FDP_PROBE);
 		fdp_master_probe_group(m);
 		fdp_master_send_beacon(m);
 	}
 	if (!m->underway)
 		return;
-	if (now_ns >= m->probe_at && now_ns < m->barrier.deadline_ns) {
+	if (now_ns >= ask_at(m) && now_ns < m->barrier.deadline_ns) {
 		const uint64_t unacked = fdp_barrier_unacked(&m->barrier);
 
-		m->probe_at = now_ns + fdp_backoff(m->params.probe_ns, ++m->probes);
-		if (unacked)
+		m->asked_ns = now_ns;
+		m->probes++;
+		fdp_master_send_end_again(m, unacked);
+		if (m->probes == 1)
 			fdp_master_announce_to(m, unacked, FDP_PROBE);
+		else /* perhaps they do not hear the group */
+			announce_to_each(m, unacked, FDP_PROBE);
 	}
 	fdp_master_finish_if_over(m, now_ns);
 }
@@ -420,8 +455,8 @@ int64_t fdp_master_next(const struct fdp_master *m)
 		next = at < next ? at : next;
 	}
 	if (m->underway) {
-		if (fdp_barrier_unacked(&m->barrier) && m->probe_at < next)
-			next = m->probe_at;
+		if (ask_at(m) < next)
+			next = ask_at(m);
 		if (m->barrier.deadline_ns < next)
 			next = m->barrier.deadline_ns;
 	}
@@ -470,6 +505,7 @@ void fdp_master_peer(const struct fdp_master *m, size_t node, struct fdp_peer_st
 		return;
 	*out = m->peers[node].status;
 	out->state = m->peers[node].state;
+	out->answer_ns = m->peers[node].trip.mean_ns;
 }
 
 void fdp_master_clock(const struct fdp_master *m, size_t node, int64_t now_ns,

@@ -91,7 +91,11 @@ struct fdp_master_params {
 	size_t node_count;
 	size_t datagram_max; /* UDP payload bytes: MTU less IP and UDP headers */
 	int64_t deadline_ns; /* of the barrier, from fdp_master_begin */
-	int64_t probe_ns;    /* ask who has not acknowledged after this; 0: deadline/8, 5 ms at most */
+	/*
+	 * Who has not acknowledged is asked after this at the latest, sooner once it
+	 * is known how long its answers take; 0: deadline/8, 5 ms at most.
+	 */
+	int64_t probe_ns;
 	unsigned evict_frames;
 	bool multicast;   /* there is a group: one send on the wire for all */
 	bool probe_group; /* but it is used only while every live node hears it */
@@ -151,6 +155,8 @@ struct fdp_peer_status {
 	uint64_t swapped; /* frames it reported as swapped */
 	uint64_t missed;  /* barriers missed since it joined */
 	uint64_t mismatches;
+	uint64_t lost;      /* fragments of DELTAs of which it says that the first copy was lost */
+	int64_t answer_ns;  /* from a DELTA to its ACK, mean; 0: not known */
 	int64_t last_heard_ns;
 	int64_t ready_after_ns;    /* last READY, from fdp_master_begin */
 	int64_t swap_local_ns;     /* node's own CLOCK_MONOTONIC when it swapped `swapped_frame` */

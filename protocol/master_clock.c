@@ -13,6 +13,7 @@ void fdp_master_clock_forget(struct fdp_peer *peer)
 	fdp_clock_reset(&peer->clock);
 	peer->echo_due = false;
 	peer->path_count = 0;
+	peer->echoes = 0;
 }
 
 void fdp_master_note_clock(struct fdp_master *m, unsigned node, const struct fdp_report *report,
@@ -20,13 +21,13 @@ void fdp_master_note_clock(struct fdp_master *m, unsigned node, const struct fdp
 {
 	struct fdp_peer *peer = &m->peers[node];
 	const struct fdp_exchange exchange = {
-		.left_ns = report->echo_ns,
+		.left_ns = fdp_whole_time(report->echo_low, arrived_ns),
 		.peer_arrived_ns = (int64_t)((uint64_t)report->sent_ns - report->held_ns),
 		.peer_left_ns = report->sent_ns,
 		.arrived_ns = arrived_ns,
 	};
 
-	if (report->echo_ns)
+	if (report->echo_low)
 		fdp_clock_take(&peer->clock, &exchange);
 	peer->echo_due = true;
 	peer->echo_sent_ns = report->sent_ns;
@@ -51,9 +52,19 @@ static void say_back(struct fdp_master *m, unsigned node, struct fdp_announce *a
 	if (!peer->echo_due || held_ns < 0 || held_ns > UINT32_MAX || a->echoes == FDP_ECHOES_MOST)
 		return;
 	peer->echo_due = false;
+	peer->echoes++;
 	a->echo[a->echoes++] = (struct fdp_echo){
-		.node = (uint16_t)node, .held_ns = (uint32_t)held_ns, .sent_ns = peer->echo_sent_ns
+		.node = (uint16_t)node, .held_ns = (uint32_t)held_ns, .sent_low = (uint32_t)peer->echo_sent_ns
 	};
+}
+
+/* In a datagram to all: two a SWAP keep a few clocks; until all have theirs, what there is room for. */
+static unsigned echoes_to_say(const struct fdp_master *m)
+{
+	for (size_t i = 0; i < m->params.node_count; i++)
+		if (m->peers[i].echo_due && m->peers[i].echoes < FDP_ECHOES_FIRST)
+			return FDP_ECHOES_MOST;
+	return m->params.node_count <= FDP_ECHOES_FEW ? 2 : FDP_ECHOES_MOST;
 }
 
 void fdp_master_say_time(struct fdp_master *m, int to, struct fdp_announce *a)
@@ -67,7 +78,7 @@ void fdp_master_say_time(struct fdp_master *m, int to, struct fdp_announce *a)
 		return;
 	}
 	/* One datagram for all has room for a few: they take turns. */
-	for (unsigned i = 0; i < count && a->echoes < FDP_ECHOES_MOST; i++) {
+	for (unsigned i = 0; i < count && a->echoes < echoes_to_say(m); i++) {
 		const unsigned node = (from + i) % count;
 
 		say_back(m, node, a);

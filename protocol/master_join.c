@@ -96,6 +96,8 @@ static void admit(struct fdp_master *m, unsigned node, const struct fdp_header *
 		.plan_cost = join->plan_cost, .plan_error = join->plan_error,
 	};
 	fdp_master_clock_forget(peer);
+	peer->trip = (struct fdp_trip){ 0, 0 };
+	peer->lost = 0;
 	peer->synced = peer->wants_snapshot = false;
 	peer->missed_row = 0;
 	peer->joined_ns = now_ns;

@@ -16,6 +16,7 @@
 #include "protocol/session_keys.h"
 #include "protocol/share.h"
 #include "protocol/state.h"
+#include "protocol/trip.h"
 
 #define FDP_HASH_RING 64 /* frames whose hash an ACK may still name */
 #define FDP_PROBE_MOST_NS INT64_C(5000000) /* a long deadline is no reason to repair slowly */
@@ -24,14 +25,14 @@
 #define FDP_REFUSED_AGAIN_NS INT64_C(60000000000) /* a repeated reason is told once in this time */
 /* Sequences of a node's n-th incarnation start at n << this: older ones never pass. */
 #define FDP_INCARNATION_SHIFT 40
-/* Evidence of loss adds, a frame takes away; small messages go twice above. */
-#define FDP_LOSS_EVIDENCE 32
-#define FDP_LOSS_TWICE 64
-#define FDP_LOSS_MAX 256
+/* So many frames after the last sign of loss, small messages go twice. */
+#define FDP_LOSS_FRAMES 512
 #define FDP_GROUP_PATIENCE_NS INT64_C(1000000000) /* for a node to hear the group before it is named */
 #define FDP_SAID_FRAMES 64 /* SWAP says which slices there are until so long after the last change */
 
 #define FDP_SWAPPED_MOST_NS INT64_C(10000000000) /* a swap is told of within this */
+#define FDP_ECHOES_FIRST 64 /* to a node that has just joined, as fast as there is room */
+#define FDP_ECHOES_FEW 4 /* up to so many nodes two echoes a SWAP are enough */
 #define FDP_PATHS 64 /* ways of a SWAP that its lead is measured by */
 
 struct fdp_peer {
@@ -46,12 +47,15 @@ struct fdp_peer {
 	uint64_t mismatch_frame; /* counted once a frame */
 	unsigned missed_row;
 	int64_t joined_ns;
+	uint32_t lost;        /* as its last report said, see fdp_report */
+	struct fdp_trip trip; /* from a DELTA to its ACK */
 	int64_t snapshot_ns; /* last sent */
 	int64_t told_ns;     /* a dead one was told so */
 	int64_t refused_ns;
 	struct fdp_clock clock;     /* the node's beside ours */
 	bool echo_due;              /* a report came that was not said back yet */
 	int64_t echo_sent_ns, echo_arrived_ns; /* its clock, ours */
+	uint64_t echoes;            /* said to it */
 	uint32_t path_ns[FDP_PATHS]; /* of its last SWAPs */
 	uint64_t path_count;
 	char refused[FDP_REASON_MAX];
@@ -86,8 +90,10 @@ struct fdp_master {
 	uint64_t snapshot_present; /* whom the snapshot names as present */
 	int64_t repaired_ns[FDP_FRAGMENTS_MAX]; /* of delta, when sent to all again */
 	uint64_t repair_budget;                 /* bytes left in this frame */
-	unsigned loss;
-	int64_t probe_at, keepalive_at;
+	unsigned loss; /* frames for which small messages still go twice */
+	int64_t asked_ns; /* who has not acknowledged the frame was last asked, or the frame began */
+	int64_t keepalive_at;
+	int64_t all_told_ns; /* SWAP last went to all nodes that the layout has */
 	unsigned probes; /* in this frame */
 
 	bool group;            /* what is for all goes to the group */
@@ -127,6 +133,10 @@ void fdp_master_on_nack(struct fdp_master *m, unsigned node, const struct fdp_na
 			int64_t now_ns);
 void fdp_master_begin_repairs(struct fdp_master *m);
 void fdp_master_saw_loss(struct fdp_master *m);
+/* How long to wait for an answer of all of these nodes before asking again. */
+int64_t fdp_master_wait(const struct fdp_master *m, uint64_t nodes);
+/* The end of the frame's DELTA once more, to who has not acknowledged it. */
+void fdp_master_send_end_again(struct fdp_master *m, uint64_t nodes);
 
 /* A frame begins with these nodes: is the division another one? */
 void fdp_master_share_begin(struct fdp_master *m, uint64_t live);
@@ -161,7 +171,7 @@ static inline int fdp_master_all(const struct fdp_master *m)
 
 static inline bool fdp_master_twice(const struct fdp_master *m)
 {
-	return m->loss >= FDP_LOSS_TWICE;
+	return m->loss > 0;
 }
 
 #endif

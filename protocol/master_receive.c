@@ -44,10 +44,14 @@ static void note_acked(struct fdp_master *m, unsigned node, const struct fdp_rep
 	peer->wants_snapshot = false;
 	if (report->frame > peer->status.acked)
 		peer->status.acked = report->frame;
-	if (report->frame == m->barrier.frame)
+	if (report->frame == m->barrier.frame && !(m->barrier.acked & BIT(node))) {
 		m->barrier.acked |= BIT(node);
+		if (m->barrier.live & BIT(node) && m->underway)
+			fdp_trip_take(&peer->trip, m->now_ns - m->barrier.begun_ns);
+	}
 	if (peer->state == FDP_PEER_JOINING && !peer->synced) {
 		peer->synced = true;
+		fdp_trip_take(&peer->trip, m->now_ns - peer->snapshot_ns);
 		fdp_master_say(m, &joined);
 	}
 }
@@ -104,10 +108,25 @@ static void note_swap(struct fdp_peer *peer, const struct fdp_report *report, in
 	fdp_master_note_path(peer, report->path_ns);
 }
 
+/* What the node lost, cumulative: any report tells. */
+static void note_losses(struct fdp_master *m, unsigned node, const struct fdp_report *report)
+{
+	struct fdp_peer *peer = &m->peers[node];
+	const uint32_t more = report->lost - peer->lost;
+
+	/* Reports overtake each other: one that says less is older. */
+	if (!more || more > UINT32_MAX / 2)
+		return;
+	peer->lost = report->lost;
+	peer->status.lost += more;
+	fdp_master_saw_loss(m);
+}
+
 static void on_report(struct fdp_master *m, unsigned node, enum fdp_kind kind,
 		      const struct fdp_report *report, int64_t now_ns)
 {
 	fdp_master_note_clock(m, node, report, m->arrived_ns);
+	note_losses(m, node, report);
 	note_swap(&m->peers[node], report, now_ns);
 	fdp_master_note_slice(m, node, report->slice, now_ns);
 	if (kind == FDP_SWAPPED || !state_agrees(m, node, report, now_ns))

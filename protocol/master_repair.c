@@ -10,14 +10,25 @@
 
 void fdp_master_saw_loss(struct fdp_master *m)
 {
-	m->loss += FDP_LOSS_EVIDENCE;
-	if (m->loss > FDP_LOSS_MAX)
-		m->loss = FDP_LOSS_MAX;
+	m->loss = FDP_LOSS_FRAMES;
+}
+
+int64_t fdp_master_wait(const struct fdp_master *m, uint64_t nodes)
+{
+	int64_t wait_ns = 0;
+
+	for (size_t i = 0; i < m->params.node_count; i++) {
+		const int64_t ns = fdp_trip_wait(&m->peers[i].trip, m->params.probe_ns);
+
+		if (nodes >> i & 1 && ns > wait_ns)
+			wait_ns = ns;
+	}
+	return wait_ns;
 }
 
 void fdp_master_begin_repairs(struct fdp_master *m)
 {
-	const size_t message = FDP_STATE_HEAD_BYTES + param_delta_max();
+	const size_t message = FDP_STATE_HEAD_MAX + param_delta_max();
 	const size_t count = fdp_fragment_count(message, m->out.datagram_max);
 	const uint64_t readers = m->group ? 4 : m->params.node_count * 4;
 
@@ -67,7 +78,7 @@ static void repair(struct fdp_master *m, unsigned node, const struct fdp_letter 
 	bool all = letter == &m->delta && m->group;
 
 	if (all && m->repaired_ns[index] != INT64_MIN) {
-		if (now_ns - m->repaired_ns[index] < m->params.probe_ns / 4)
+		if (now_ns - m->repaired_ns[index] < fdp_master_wait(m, m->barrier.live) / 2)
 			return;
 		all = false; /* perhaps this node does not hear the group at all */
 	}
@@ -76,10 +87,34 @@ static void repair(struct fdp_master *m, unsigned node, const struct fdp_letter 
 	if (all)
 		m->repaired_ns[index] = now_ns;
 	m->counters.repairs++;
-	fdp_outbox_fragment(&m->out, all ? FDP_TO_GROUP : (int)node, letter, index);
+	fdp_outbox_again(&m->out, all ? FDP_TO_GROUP : (int)node, letter, index);
 	/* To one node the NACK's own second copy brings it twice. */
 	if (all && fdp_master_twice(m) && spend(m, letter, index))
-		fdp_outbox_fragment(&m->out, FDP_TO_GROUP, letter, index);
+		fdp_outbox_again(&m->out, FDP_TO_GROUP, letter, index);
+}
+
+/*
+ * A node that has nothing of it, or all but its end, need not be asked first.
+ * The others it costs no more than the PROBE that follows.
+ */
+void fdp_master_send_end_again(struct fdp_master *m, uint64_t nodes)
+{
+	const unsigned end = m->delta.count - 1u;
+	/* Who does not answer to the group may not hear it. */
+	const bool all = m->group && nodes & (nodes - 1) && m->probes == 1;
+
+	if (!m->delta.number || m->delta.frame != m->frame)
+		return;
+	for (unsigned i = 0; i < m->params.node_count; i++) {
+		if (!(nodes >> i & 1))
+			continue;
+		if (!spend(m, &m->delta, end))
+			return;
+		m->counters.repairs++;
+		fdp_outbox_again(&m->out, all ? FDP_TO_GROUP : (int)i, &m->delta, end);
+		if (all)
+			return;
+	}
 }
 
 void fdp_master_on_nack(struct fdp_master *m, unsigned node, const struct fdp_nack *nack,
@@ -100,7 +135,6 @@ void fdp_master_on_nack(struct fdp_master *m, unsigned node, const struct fdp_na
 	/* Something older: the next delta carries it too. */
 	if (!letter || letter->frame != m->frame || nack->count != letter->count)
 		return;
-	fdp_master_saw_loss(m);
 	for (unsigned i = 0; i < letter->count; i++)
 		if (fdp_bit(nack->missing, i))
 			repair(m, node, letter, i, now_ns);

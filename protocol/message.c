@@ -174,22 +174,44 @@ int fdp_beacon_decode(const uint8_t *bytes, size_t len)
 	return any ? GR_ERR_FORMAT : GR_OK;
 }
 
+/* A time near another one, whatever either says: differences wrap. */
+static void write_near(struct gr_writer *w, int64_t ns, int64_t near_ns)
+{
+	gr_write_varint(w, gr_zigzag((int64_t)((uint64_t)ns - (uint64_t)near_ns)));
+}
+
+static int64_t read_near(struct gr_reader *r, int64_t near_ns)
+{
+	return (int64_t)((uint64_t)near_ns + (uint64_t)gr_unzigzag(gr_read_varint(r)));
+}
+
+/* A number that must be under 2^bits. */
+static uint64_t read_bits(struct gr_reader *r, unsigned bits)
+{
+	const uint64_t value = gr_read_varint(r);
+
+	if (value >> bits)
+		r->ok = false;
+	return value;
+}
+
 size_t fdp_report_encode(const struct fdp_report *m, uint8_t *bytes, size_t size)
 {
 	struct gr_writer w = gr_writer(bytes, size);
 
-	gr_write_u64(&w, m->frame);
 	gr_write_u64(&w, m->hash);
-	gr_write_u64(&w, m->swapped_frame);
-	gr_write_u64(&w, m->swapped_count);
-	gr_write_u64(&w, (uint64_t)m->swap_ns);
-	gr_write_u32(&w, m->render_us);
-	gr_write_u32(&w, m->held_ns);
-	gr_write_u64(&w, m->slice);
+	gr_write_varint(&w, m->frame);
+	gr_write_varint(&w, m->frame - m->swapped_frame);
+	gr_write_varint(&w, m->swapped_count);
 	gr_write_u64(&w, (uint64_t)m->sent_ns);
-	gr_write_u64(&w, (uint64_t)m->echo_ns);
-	gr_write_u32(&w, m->path_ns);
-	gr_write_u32(&w, m->swaps_late);
+	write_near(&w, m->swap_ns, m->sent_ns);
+	gr_write_u32(&w, m->echo_low);
+	gr_write_varint(&w, m->held_ns);
+	gr_write_varint(&w, m->slice);
+	gr_write_varint(&w, m->render_us);
+	gr_write_varint(&w, m->path_ns);
+	gr_write_varint(&w, m->swaps_late);
+	gr_write_varint(&w, m->lost);
 	return written(&w);
 }
 
@@ -197,19 +219,20 @@ int fdp_report_decode(const uint8_t *bytes, size_t len, struct fdp_report *out)
 {
 	struct gr_reader r = gr_reader(bytes, len);
 
-	out->frame = gr_read_u64(&r);
 	out->hash = gr_read_u64(&r);
-	out->swapped_frame = gr_read_u64(&r);
-	out->swapped_count = gr_read_u64(&r);
-	out->swap_ns = (int64_t)gr_read_u64(&r);
-	out->render_us = gr_read_u32(&r);
-	out->held_ns = gr_read_u32(&r);
-	out->slice = gr_read_u64(&r);
+	out->frame = gr_read_varint(&r);
+	out->swapped_frame = out->frame - gr_read_varint(&r);
+	out->swapped_count = gr_read_varint(&r);
 	out->sent_ns = (int64_t)gr_read_u64(&r);
-	out->echo_ns = (int64_t)gr_read_u64(&r);
-	out->path_ns = gr_read_u32(&r);
-	out->swaps_late = gr_read_u32(&r);
-	if (!out->echo_ns && out->held_ns)
+	out->swap_ns = read_near(&r, out->sent_ns);
+	out->echo_low = gr_read_u32(&r);
+	out->held_ns = (uint32_t)read_bits(&r, 32);
+	out->slice = gr_read_varint(&r);
+	out->render_us = (uint32_t)read_bits(&r, 32);
+	out->path_ns = (uint32_t)read_bits(&r, 32);
+	out->swaps_late = (uint32_t)read_bits(&r, 32);
+	out->lost = (uint32_t)read_bits(&r, 32);
+	if (out->swapped_frame > out->frame || (!out->echo_low && out->held_ns))
 		return GR_ERR_FORMAT;
 	return finished(&r);
 }
@@ -245,44 +268,89 @@ int fdp_nack_decode(const uint8_t *bytes, size_t len, struct fdp_nack *out)
 	return finished(&r);
 }
 
+/* Frames of a division, from 1: 0 is none. */
+static void write_since(struct gr_writer *w, uint64_t since, uint64_t frame)
+{
+	gr_write_varint(w, since ? frame - since + 1 : 0);
+}
+
+static uint64_t read_since(struct gr_reader *r, uint64_t frame)
+{
+	const uint64_t frames = gr_read_varint(r);
+
+	if (frames > frame)
+		r->ok = false; /* no division begins before frame 1 */
+	return frames ? frame - frames + 1 : 0;
+}
+
+/* A flag of the wire alone: there is a time to swap at. */
+#define ANNOUNCE_TIMED 2u
+
 size_t fdp_announce_encode(const struct fdp_announce *m, uint8_t *bytes, size_t size)
 {
 	struct gr_writer w = gr_writer(bytes, size);
 
-	gr_write_u64(&w, m->frame);
-	gr_write_u64(&w, m->swapped);
-	gr_write_u64(&w, m->message);
-	gr_write_u64(&w, m->live);
-	gr_write_u64(&w, m->present);
-	gr_write_u16(&w, m->count);
-	gr_write_u16(&w, m->flags);
-	gr_write_u64(&w, m->since);
-	gr_write_u16(&w, m->slices);
+	gr_write_u8(&w, (uint8_t)(m->flags | (m->swap_ns ? ANNOUNCE_TIMED : 0)));
+	gr_write_varint(&w, m->frame);
+	gr_write_varint(&w, m->frame - m->swapped);
+	gr_write_varint(&w, m->present);
+	gr_write_varint(&w, m->present ^ m->live);
+	gr_write_varint(&w, m->count);
+	if (m->count)
+		gr_write_varint(&w, m->message);
+	if (m->flags & FDP_TWICE)
+		gr_write_varint(&w, m->wait_us);
+	write_since(&w, m->since, m->frame);
+	gr_write_varint(&w, m->slices);
 	for (unsigned i = 0; i < m->slices; i++)
-		gr_write_u32(&w, m->age[i]);
+		gr_write_varint(&w, m->age[i]);
 	gr_write_u64(&w, (uint64_t)m->sent_ns);
-	gr_write_u64(&w, (uint64_t)m->swap_ns);
-	gr_write_u16(&w, m->echoes);
+	if (m->swap_ns)
+		write_near(&w, m->swap_ns, m->sent_ns);
+	gr_write_varint(&w, m->echoes);
 	for (unsigned i = 0; i < m->echoes; i++) {
-		gr_write_u16(&w, m->echo[i].node);
-		gr_write_u32(&w, m->echo[i].held_ns);
-		gr_write_u64(&w, (uint64_t)m->echo[i].sent_ns);
+		gr_write_varint(&w, m->echo[i].node);
+		gr_write_varint(&w, m->echo[i].held_ns);
+		gr_write_u32(&w, m->echo[i].sent_low);
 	}
 	return written(&w);
 }
 
 static bool read_echoes(struct gr_reader *r, struct fdp_announce *out)
 {
+	const uint64_t echoes = gr_read_varint(r);
+
 	memset(out->echo, 0, sizeof out->echo);
-	out->echoes = gr_read_u16(r);
-	if (out->echoes > FDP_ECHOES_MOST)
+	if (echoes > FDP_ECHOES_MOST)
 		return false;
+	out->echoes = (uint16_t)echoes;
 	for (unsigned i = 0; i < out->echoes; i++) {
-		out->echo[i].node = gr_read_u16(r);
-		out->echo[i].held_ns = gr_read_u32(r);
-		out->echo[i].sent_ns = (int64_t)gr_read_u64(r);
-		if (out->echo[i].node >= FDP_MAX_NODES)
+		const uint64_t node = gr_read_varint(r);
+
+		if (node >= FDP_MAX_NODES)
 			return false;
+		out->echo[i].node = (uint16_t)node;
+		out->echo[i].held_ns = (uint32_t)read_bits(r, 32);
+		out->echo[i].sent_low = gr_read_u32(r);
+	}
+	return true;
+}
+
+static bool read_slices(struct gr_reader *r, struct fdp_announce *out)
+{
+	uint64_t slices;
+
+	out->since = read_since(r, out->frame);
+	slices = gr_read_varint(r);
+	if (slices > FDP_MAX_NODES || (slices && !out->since))
+		return false;
+	out->slices = (uint16_t)slices;
+	for (unsigned i = 0; i < FDP_MAX_NODES; i++) {
+		const uint64_t age = i < slices ? gr_read_varint(r) : FDP_AGE_NONE;
+
+		if (age > FDP_AGE_NONE)
+			return false;
+		out->age[i] = (uint32_t)age;
 	}
 	return true;
 }
@@ -290,26 +358,25 @@ static bool read_echoes(struct gr_reader *r, struct fdp_announce *out)
 int fdp_announce_decode(const uint8_t *bytes, size_t len, struct fdp_announce *out)
 {
 	struct gr_reader r = gr_reader(bytes, len);
+	const uint8_t flags = gr_read_u8(&r);
 
-	out->frame = gr_read_u64(&r);
-	out->swapped = gr_read_u64(&r);
-	out->message = gr_read_u64(&r);
-	out->live = gr_read_u64(&r);
-	out->present = gr_read_u64(&r);
-	out->count = gr_read_u16(&r);
-	out->flags = gr_read_u16(&r);
-	out->since = gr_read_u64(&r);
-	out->slices = gr_read_u16(&r);
-	if (out->slices > FDP_MAX_NODES || (out->slices && !out->since) || out->since > out->frame)
+	out->frame = gr_read_varint(&r);
+	out->swapped = out->frame - gr_read_varint(&r);
+	out->present = gr_read_varint(&r);
+	out->live = out->present ^ gr_read_varint(&r);
+	out->count = (uint16_t)read_bits(&r, 16);
+	out->message = out->count ? gr_read_varint(&r) : 0;
+	out->flags = flags & (uint8_t)~ANNOUNCE_TIMED;
+	out->wait_us = out->flags & FDP_TWICE ? (uint32_t)read_bits(&r, 32) : 0;
+	if (!read_slices(&r, out))
 		return GR_ERR_FORMAT;
-	for (unsigned i = 0; i < FDP_MAX_NODES; i++)
-		out->age[i] = i < out->slices ? gr_read_u32(&r) : FDP_AGE_NONE;
 	out->sent_ns = (int64_t)gr_read_u64(&r);
-	out->swap_ns = (int64_t)gr_read_u64(&r);
+	out->swap_ns = flags & ANNOUNCE_TIMED ? read_near(&r, out->sent_ns) : 0;
 	if (!read_echoes(&r, out))
 		return GR_ERR_FORMAT;
 	if (out->count > FDP_FRAGMENTS_MAX || !out->message != !out->count ||
-	    out->swapped > out->frame || out->live & ~out->present || out->flags & ~FDP_TWICE)
+	    !(flags & ANNOUNCE_TIMED) != !out->swap_ns || out->swapped > out->frame ||
+	    out->live & ~out->present || out->flags & ~FDP_TWICE)
 		return GR_ERR_FORMAT;
 	return finished(&r);
 }
@@ -334,34 +401,38 @@ size_t fdp_state_head_encode(const struct fdp_state_head *m, uint8_t *bytes, siz
 {
 	struct gr_writer w = gr_writer(bytes, size);
 
-	gr_write_u64(&w, m->frame);
-	gr_write_u64(&w, m->previous_frame);
 	gr_write_u64(&w, m->hash);
-	gr_write_u64(&w, m->previous_hash);
-	gr_write_u64(&w, m->live);
-	gr_write_u64(&w, m->present);
-	gr_write_u32(&w, m->flags);
-	gr_write_u64(&w, m->shared);
-	gr_write_u64(&w, m->shared_since);
+	gr_write_u8(&w, (uint8_t)m->flags);
+	gr_write_varint(&w, m->frame);
+	gr_write_varint(&w, m->frame - m->previous_frame);
+	if (!(m->flags & FDP_CHAINED))
+		gr_write_u64(&w, m->previous_hash);
+	gr_write_varint(&w, m->present);
+	gr_write_varint(&w, m->present ^ m->live);
+	write_since(&w, m->shared_since, m->frame);
+	if (m->shared_since)
+		gr_write_varint(&w, m->shared ^ m->live);
 	return written(&w);
 }
 
-int fdp_state_head_decode(const uint8_t *bytes, size_t len, struct fdp_state_head *out)
+int fdp_state_head_decode(const uint8_t *bytes, size_t len, struct fdp_state_head *out,
+			  size_t *out_len)
 {
 	struct gr_reader r = gr_reader(bytes, len);
 
-	out->frame = gr_read_u64(&r);
-	out->previous_frame = gr_read_u64(&r);
 	out->hash = gr_read_u64(&r);
-	out->previous_hash = gr_read_u64(&r);
-	out->live = gr_read_u64(&r);
-	out->present = gr_read_u64(&r);
-	out->flags = gr_read_u32(&r);
-	out->shared = gr_read_u64(&r);
-	out->shared_since = gr_read_u64(&r);
-	if (!out->shared != !out->shared_since || out->shared_since > out->frame)
+	out->flags = gr_read_u8(&r);
+	out->frame = gr_read_varint(&r);
+	out->previous_frame = out->frame - gr_read_varint(&r);
+	out->previous_hash = out->flags & FDP_CHAINED ? 0 : gr_read_u64(&r);
+	out->present = gr_read_varint(&r);
+	out->live = out->present ^ gr_read_varint(&r);
+	out->shared_since = read_since(&r, out->frame);
+	out->shared = out->shared_since ? gr_read_varint(&r) ^ out->live : 0;
+	*out_len = r.at;
+	if (!out->shared != !out->shared_since)
 		return GR_ERR_FORMAT;
-	if (!r.ok || out->flags & ~FDP_TWICE || out->live & ~out->present ||
+	if (!r.ok || out->flags & ~(FDP_TWICE | FDP_CHAINED) || out->live & ~out->present ||
 	    (out->frame ? out->previous_frame >= out->frame : out->previous_frame))
 		return GR_ERR_FORMAT;
 	return GR_OK;

@@ -8,6 +8,8 @@
 
 #include "protocol/fragment.h"
 
+#include "base/cursor.h"
+
 #define FDP_NONCE_BYTES 16
 #define FDP_NAME_BYTES 32 /* with the final NUL */
 /* Padded: what answers a JOIN, or a BEACON, is never longer than it. */
@@ -62,13 +64,16 @@ struct fdp_report {
 	uint32_t render_us;
 	uint64_t slice; /* frame of the newest slice that the node has made; 0: none in this division */
 	/*
-	 * For the clocks (clock_offset.h): when this left, by the node's; sent_ns of
+	 * For the clocks (clock_offset.h): when this left, by the node's; of sent_ns of
 	 * the newest PROBE or SWAP that it has, 0: none, and how long ago that came.
 	 */
-	int64_t sent_ns, echo_ns;
+	int64_t sent_ns;
+	uint32_t echo_low; /* see fdp_whole_time */
 	uint32_t held_ns;
 	uint32_t path_ns;    /* from the last SWAP's leaving until the node had it in hand; 0: not known */
 	uint32_t swaps_late; /* SWAPs since the join that were in hand after their time */
+	/* Fragments of DELTAs since the join of which no first copy came; wraps. */
+	uint32_t lost;
 };
 
 #define FDP_NACK_SNAPSHOT 1u /* cannot use what came: send the whole state */
@@ -79,16 +84,26 @@ struct fdp_nack {
 	uint8_t missing[FDP_BITMAP_BYTES];
 };
 
+/*
+ * In a state's head: the hash of the frame before is left out, since nobody
+ * needs it who has that frame, and that frame is the delta's base.
+ */
+#define FDP_CHAINED 2u
 #define FDP_TWICE 1u /* the way is lossy: READY and NACK are worth sending twice */
 /* How old a slice is that nobody has made yet, or that is older than can be said. */
-#define FDP_AGE_NONE UINT32_MAX
+#define FDP_AGE_NONE ((1u << 21) - 1) /* three bytes on the wire */
 /* A node's report, said back: when it left (node's clock), and how long ago it came. */
 struct fdp_echo {
 	uint16_t node;
 	uint32_t held_ns;
-	int64_t sent_ns;
+	uint32_t sent_low; /* see fdp_whole_time */
 };
 #define FDP_ECHOES_MOST 4
+/* One's own time, said back by its low half: the last one before now_ns that has it, within 4.3 s. */
+static inline int64_t fdp_whole_time(uint32_t low, int64_t now_ns)
+{
+	return now_ns - (int64_t)(uint32_t)((uint32_t)now_ns - low);
+}
 /* A datagram may wait so long in its socket for a busy receiver. */
 #define FDP_ARRIVED_MOST_NS INT64_C(1000000000)
 
@@ -99,6 +114,7 @@ struct fdp_announce {
 	uint64_t live, present;  /* bit i: node i counts in the barrier; is known */
 	uint16_t count;          /* fragments of that message */
 	uint16_t flags;
+	uint32_t wait_us; /* after which the master asks again who has not acknowledged; 0 without FDP_TWICE */
 	/* The newest whole slices, by rank; slices 0: not said. Division: as in the state's head. */
 	uint64_t since;
 	uint16_t slices;
@@ -134,7 +150,7 @@ struct fdp_lack {
 /* What precedes the delta in DELTA and SNAPSHOT. */
 struct fdp_state_head {
 	uint64_t frame, previous_frame;
-	uint64_t hash, previous_hash;
+	uint64_t hash, previous_hash; /* previous_hash 0 with FDP_CHAINED */
 	uint64_t live, present;
 	uint32_t flags;
 	/*
@@ -144,7 +160,7 @@ struct fdp_state_head {
 	 */
 	uint64_t shared, shared_since;
 };
-#define FDP_STATE_HEAD_BYTES 68
+#define FDP_STATE_HEAD_MAX (1 + 2 * 8 + 6 * GR_VARINT_MOST)
 
 size_t fdp_join_encode(const struct fdp_join *m, uint8_t *bytes, size_t size);
 int fdp_join_decode(const uint8_t *bytes, size_t len, struct fdp_join *out);
@@ -169,7 +185,8 @@ size_t fdp_piece_encode(const struct fdp_piece *m, uint8_t *bytes, size_t size);
 int fdp_piece_decode(const uint8_t *bytes, size_t len, struct fdp_piece *out);
 size_t fdp_lack_encode(const struct fdp_lack *m, uint8_t *bytes, size_t size);
 int fdp_lack_decode(const uint8_t *bytes, size_t len, struct fdp_lack *out);
-/* The delta is what follows: bytes + FDP_STATE_HEAD_BYTES. */
-int fdp_state_head_decode(const uint8_t *bytes, size_t len, struct fdp_state_head *out);
+/* The delta is what follows the head's *out_len bytes. */
+int fdp_state_head_decode(const uint8_t *bytes, size_t len, struct fdp_state_head *out,
+			  size_t *out_len);
 
 #endif

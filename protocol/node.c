@@ -213,7 +213,7 @@ static enum fdp_verdict on_welcome(struct fdp_node *n, const struct fdp_header *
 	/* No WELCOME is good twice: the next one must echo another nonce. */
 	memcpy(n->joined_nonce, n->nonce, sizeof n->joined_nonce);
 	randombytes_buf(n->nonce, sizeof n->nonce);
-	n->retry_ns = (int64_t)w.probe_us * 1000;
+	n->retry_ns = n->wait_ns = (int64_t)w.probe_us * 1000;
 	n->out.sequence = w.first_sequence - 1;
 	fdp_replay_start(&n->window, h->sequence);
 	enter_session(n, h->session, &w, now_ns);

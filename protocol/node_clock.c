@@ -26,7 +26,7 @@ void fdp_node_say_time(const struct fdp_node *n, struct fdp_report *report, int6
 	report->swaps_late = n->swaps_late;
 	if (!n->echo_ns || held_ns < 0 || held_ns > UINT32_MAX)
 		return;
-	report->echo_ns = n->echo_ns;
+	report->echo_low = (uint32_t)n->echo_ns;
 	report->held_ns = (uint32_t)held_ns;
 }
 
@@ -34,7 +34,7 @@ void fdp_node_note_clock(struct fdp_node *n, const struct fdp_announce *a, int64
 {
 	for (unsigned i = 0; i < a->echoes; i++) {
 		const struct fdp_exchange exchange = {
-			.left_ns = a->echo[i].sent_ns,
+			.left_ns = fdp_whole_time(a->echo[i].sent_low, arrived_ns),
 			.peer_arrived_ns = (int64_t)((uint64_t)a->sent_ns - a->echo[i].held_ns),
 			.peer_left_ns = a->sent_ns,
 			.arrived_ns = arrived_ns,

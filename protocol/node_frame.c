@@ -14,6 +14,8 @@ void fdp_node_frame_reset(struct fdp_node *n)
 	n->swapped_frame = n->swapped_count = 0;
 	n->swap_ns = 0;
 	n->nacked_ns = 0;
+	n->wait_ns = n->retry_ns;
+	n->lost = 0;
 	fdp_node_clock_reset(n);
 	fdp_reassembly_reset(&n->delta);
 	fdp_reassembly_reset(&n->snapshot);
@@ -31,6 +33,7 @@ static void send_report(struct fdp_node *n, enum fdp_kind kind, uint64_t frame, 
 		.swap_ns = n->swap_ns,
 		.render_us = n->current.render_us,
 		.slice = n->slice_frame,
+		.lost = n->lost,
 	};
 
 	fdp_node_say_time(n, &report, now_ns);
@@ -146,14 +149,17 @@ static enum fdp_verdict take_state(struct fdp_node *n, const struct fdp_header *
 				   const uint8_t *bytes, size_t len, int64_t now_ns)
 {
 	struct fdp_state_head head;
-	const uint8_t *delta = bytes + FDP_STATE_HEAD_BYTES;
+	const uint8_t *delta;
 	uint64_t base;
+	size_t at;
 	const bool snapshot = h->kind == FDP_SNAPSHOT;
 
-	if (fdp_state_head_decode(bytes, len, &head))
+	if (fdp_state_head_decode(bytes, len, &head, &at))
 		return FDP_BAD_FORMAT;
-	len -= FDP_STATE_HEAD_BYTES;
-	if (param_delta_base(delta, len, &base) || (snapshot && base) || base > head.frame)
+	delta = bytes + at;
+	len -= at;
+	if (param_delta_base(delta, len, &base) || (snapshot && base) || base > head.frame ||
+	    (head.flags & FDP_CHAINED && (!base || base != head.previous_frame)))
 		return FDP_BAD_FORMAT;
 	if (left_out(n, head.present, h->sequence))
 		return FDP_GOOD;
@@ -212,6 +218,9 @@ enum fdp_verdict fdp_node_on_state(struct fdp_node *n, const struct fdp_header *
 	/* A delta is of no use before the snapshot, and asking for its rest even less. */
 	if (n->status == FDP_NODE_WAITING_SNAPSHOT && h->kind == FDP_DELTA)
 		return FDP_GOOD;
+	/* What is still to come of the message before will not come now. */
+	if (h->kind == FDP_DELTA && h->message > r->message)
+		n->lost += fdp_reassembly_lost(r);
 	switch (fdp_reassembly_add(r, h, payload)) {
 	case FDP_FRAGMENT_BAD:
 		return FDP_BAD_FORMAT;
@@ -219,8 +228,7 @@ enum fdp_verdict fdp_node_on_state(struct fdp_node *n, const struct fdp_header *
 		snapshot_again(n, h, now_ns);
 		return FDP_GOOD;
 	case FDP_FRAGMENT_PART:
-		if (r->have == 1)
-			n->nacked_ns = now_ns; /* the rest may be on its way */
+		n->nacked_ns = now_ns; /* the rest may be on its way */
 		nack_gap(n, r, h->index, now_ns);
 		return FDP_GOOD;
 	case FDP_FRAGMENT_WHOLE:
@@ -238,7 +246,7 @@ static void ask_for_announced(struct fdp_node *n, const struct fdp_announce *a, 
 {
 	struct fdp_nack nack = { .frame = a->frame, .message = a->message, .count = a->count };
 
-	if (!a->message || (n->nacked_ns && now_ns - n->nacked_ns < n->retry_ns / 2))
+	if (!a->message || (n->nacked_ns && now_ns - n->nacked_ns < n->wait_ns / 2))
 		return;
 	if (a->message == n->delta.message) {
 		if (fdp_reassembly_open(&n->delta))
@@ -264,6 +272,8 @@ enum fdp_verdict fdp_node_on_announce(struct fdp_node *n, const struct fdp_heade
 	if (n->status != FDP_NODE_LIVE || left_out(n, a.present, h->sequence))
 		return FDP_GOOD;
 	n->twice = a.flags & FDP_TWICE;
+	n->wait_ns = a.wait_us && (int64_t)a.wait_us * 1000 < n->retry_ns ? (int64_t)a.wait_us * 1000
+									  : n->retry_ns;
 	fdp_node_note_clock(n, &a, n->arrived_ns);
 	if (a.swapped > n->swap_seen) {
 		n->swap_seen = a.swapped;
@@ -282,15 +292,28 @@ enum fdp_verdict fdp_node_on_announce(struct fdp_node *n, const struct fdp_heade
 	return FDP_GOOD;
 }
 
+/*
+ * When READY is said again. It waits for the slowest of all nodes, so no answer is
+ * no sign of loss: only where datagrams do get lost is it repeated soon, and then
+ * after ever twice the time.
+ */
+static int64_t ready_at(const struct fdp_node *n)
+{
+	const unsigned asks = n->current.asks;
+	const int64_t steady_ns = fdp_backoff(n->retry_ns, asks);
+	const int64_t soon_ns = n->wait_ns << (asks < 8 ? asks : 8);
+
+	return n->current.asked_ns + (n->twice && soon_ns < steady_ns ? soon_ns : steady_ns);
+}
+
 void fdp_node_frame_tick(struct fdp_node *n, int64_t now_ns)
 {
 	/* READY or SWAP may be lost: either way, saying READY again brings the SWAP. */
-	if (n->current.ready && !n->current.swapped &&
-	    now_ns - n->current.asked_ns >= fdp_backoff(n->retry_ns, n->current.asks)) {
+	if (n->current.ready && !n->current.swapped && now_ns >= ready_at(n)) {
 		n->current.asks++;
 		send_ready(n, now_ns);
 	}
-	if (fdp_reassembly_open(&n->delta) && now_ns - n->nacked_ns >= n->retry_ns)
+	if (fdp_reassembly_open(&n->delta) && now_ns - n->nacked_ns >= n->wait_ns)
 		nack_missing(n, &n->delta, now_ns);
 	fdp_node_share_tick(n, now_ns);
 }
@@ -300,9 +323,9 @@ int64_t fdp_node_frame_next(const struct fdp_node *n)
 	int64_t next = INT64_MAX, share_next;
 
 	if (n->current.ready && !n->current.swapped)
-		next = n->current.asked_ns + fdp_backoff(n->retry_ns, n->current.asks);
-	if (fdp_reassembly_open(&n->delta) && n->nacked_ns + n->retry_ns < next)
-		next = n->nacked_ns + n->retry_ns;
+		next = ready_at(n);
+	if (fdp_reassembly_open(&n->delta) && n->nacked_ns + n->wait_ns < next)
+		next = n->nacked_ns + n->wait_ns;
 	share_next = fdp_node_share_next(n);
 	return share_next < next ? share_next : next;
 }

@@ -50,6 +50,8 @@ struct fdp_node {
 	int64_t heard_ns; /* master, in this session */
 	int64_t group_heard_ns; /* by the group; 0: not in this session */
 	int64_t retry_ns; /* the master's probe interval */
+	int64_t wait_ns;  /* after which the master asks again at present */
+	uint32_t lost;    /* as in fdp_report */
 	char refused[FDP_REASON_MAX];
 	int64_t refused_ns;
 	uint64_t joined_sequence; /* the master's, of our first snapshot */

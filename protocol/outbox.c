@@ -88,14 +88,15 @@ void fdp_outbox_letter(struct fdp_outbox *out, struct fdp_letter *letter, enum f
 	out->counters->packed++;
 }
 
-void fdp_outbox_fragment(struct fdp_outbox *out, int to, const struct fdp_letter *letter,
-			 unsigned index)
+static void send_fragment(struct fdp_outbox *out, int to, const struct fdp_letter *letter,
+			  unsigned index, bool again)
 {
 	size_t len;
 	const size_t at = fdp_fragment_at(letter->len, out->datagram_max, index, &len);
 	struct fdp_header header = {
 		.kind = letter->kind,
 		.packed = letter->packed,
+		.again = again,
 		.payload_len = (uint16_t)len,
 		.index = (uint16_t)index,
 		.count = letter->count,
@@ -106,6 +107,18 @@ void fdp_outbox_fragment(struct fdp_outbox *out, int to, const struct fdp_letter
 
 	memcpy(fdp_outbox_body(out), letter->bytes + at, len);
 	send_sealed(out, to, &header);
+}
+
+void fdp_outbox_fragment(struct fdp_outbox *out, int to, const struct fdp_letter *letter,
+			 unsigned index)
+{
+	send_fragment(out, to, letter, index, false);
+}
+
+void fdp_outbox_again(struct fdp_outbox *out, int to, const struct fdp_letter *letter,
+		      unsigned index)
+{
+	send_fragment(out, to, letter, index, true);
 }
 
 void fdp_outbox_post(struct fdp_outbox *out, int to, const struct fdp_letter *letter)

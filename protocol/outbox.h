@@ -49,6 +49,9 @@ void fdp_outbox_letter(struct fdp_outbox *out, struct fdp_letter *letter, enum f
 		       uint64_t frame, size_t plain_len);
 void fdp_outbox_fragment(struct fdp_outbox *out, int to, const struct fdp_letter *letter,
 			 unsigned index);
+/* The same once more, marked so: who has it from this one has lost the first. */
+void fdp_outbox_again(struct fdp_outbox *out, int to, const struct fdp_letter *letter,
+		      unsigned index);
 void fdp_outbox_post(struct fdp_outbox *out, int to, const struct fdp_letter *letter);
 
 #endif

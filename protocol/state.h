@@ -7,6 +7,8 @@
 
 #include "protocol/params.h"
 
+#include "base/cursor.h"
+
 #define PARAM_TYPE_SIZE(type) ((type) == PARAM_U64 ? 8 : 4)
 
 /* Bytes of all values in their encoded form, known when compiling. */
@@ -17,10 +19,13 @@ enum {
 #undef X
 };
 
-/* A delta: base u64, count u16, and per entry id u16, version u64, values. */
-#define PARAM_DELTA_HEAD 10
-#define PARAM_ENTRY_HEAD 10
-#define PARAM_DELTA_MAX (PARAM_DELTA_HEAD + PARAM_ENTRY_HEAD * PARAM_COUNT + PARAM_VALUE_BYTES)
+/*
+ * A delta: base, number of entries, and per entry how many ids are left out
+ * before it, its version less the base, values. All but these are varints.
+ */
+#define PARAM_DELTA_HEAD_MAX (GR_VARINT_MOST + 2)
+#define PARAM_ENTRY_HEAD_MAX (2 + GR_VARINT_MOST)
+#define PARAM_DELTA_MAX (PARAM_DELTA_HEAD_MAX + PARAM_ENTRY_HEAD_MAX * PARAM_COUNT + PARAM_VALUE_BYTES)
 
 struct param_state {
 	uint64_t version[PARAM_COUNT];

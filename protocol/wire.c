@@ -13,6 +13,8 @@ static const uint8_t magic[4] = { 'G', 'F', 'D', 'P' };
 
 #define FLAG_PACKED 1u
 #define FLAG_GROUP 2u
+#define FLAG_AGAIN 4u
+#define FLAGS (FLAG_PACKED | FLAG_GROUP | FLAG_AGAIN)
 /* Only states are long enough to be cut or packed. */
 #define LONG_KINDS (1u << FDP_SNAPSHOT | 1u << FDP_DELTA)
 
@@ -94,7 +96,8 @@ void fdp_wire_seal(const struct fdp_header *header, const uint8_t key[FDP_KEY_BY
 	gr_write_bytes(&w, magic, sizeof magic);
 	gr_write_u8(&w, header->version);
 	gr_write_u8(&w, (uint8_t)header->kind);
-	gr_write_u8(&w, (uint8_t)((header->packed ? FLAG_PACKED : 0) | (header->group ? FLAG_GROUP : 0)));
+	gr_write_u8(&w, (uint8_t)((header->packed ? FLAG_PACKED : 0) | (header->group ? FLAG_GROUP : 0) |
+				  (header->again ? FLAG_AGAIN : 0)));
 	gr_write_u8(&w, header->to);
 	gr_write_u16(&w, header->sender);
 	gr_write_u16(&w, header->payload_len);
@@ -118,6 +121,7 @@ static bool read_fields(struct gr_reader *r, struct fdp_header *out)
 	out->to = gr_read_u8(r);
 	out->packed = flags & FLAG_PACKED;
 	out->group = flags & FLAG_GROUP;
+	out->again = flags & FLAG_AGAIN;
 	out->sender = gr_read_u16(r);
 	out->payload_len = gr_read_u16(r);
 	out->index = gr_read_u16(r);
@@ -127,7 +131,7 @@ static bool read_fields(struct gr_reader *r, struct fdp_header *out)
 	out->message = gr_read_u64(r);
 	out->message_len = gr_read_u32(r);
 	out->plain_len = gr_read_u32(r);
-	return r->ok && !(flags & ~(FLAG_PACKED | FLAG_GROUP));
+	return r->ok && !(flags & ~FLAGS);
 }
 
 static bool lengths_right(const struct fdp_header *h, size_t len)

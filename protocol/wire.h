@@ -65,6 +65,7 @@ struct fdp_header {
 	enum fdp_kind kind;
 	bool packed;
 	bool group;      /* from the master: sent to the group; from a node: it hears the group */
+	bool again;      /* this fragment was sent before */
 	uint8_t to;      /* one more than the node that it is for; 0: all, the master, or a handshake */
 	uint16_t sender; /* node index, or FDP_SENDER_MASTER */
 	uint16_t payload_len;

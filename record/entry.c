@@ -100,7 +100,7 @@ static bool read_frame(struct gr_reader *r, const struct record_session *session
 	if (!r->ok || f->frame <= f->previous_frame || f->live & ~nodes)
 		return false;
 	delta = gr_reader(f->delta, f->delta_len);
-	base = gr_read_u64(&delta);
+	base = gr_read_varint(&delta);
 	return delta.ok && base == (whole ? 0 : f->previous_frame) &&
 	       (whole || f->previous_frame > 0);
 }

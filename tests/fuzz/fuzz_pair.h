@@ -202,7 +202,7 @@ static __attribute__((unused)) size_t fuzz_next(struct fuzz_pair *p, struct gr_r
 	if (right & 1) {
 		gr_write_bytes(&w, "GFDP\3", 5);
 		gr_write_u8(&w, header[5] % FDP_KINDS);
-		gr_write_u8(&w, header[6] & 1);
+		gr_write_u8(&w, header[6] & 7);
 		gr_write_u8(&w, 0);
 		gr_write_u16(&w, sender);
 		gr_write_u16(&w, (uint16_t)len);

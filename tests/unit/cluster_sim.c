@@ -348,7 +348,15 @@ static void begin_frame(struct sim *s)
 	float lamps[48];
 
 	assert_true(param_set(s->state, PARAM_FRAME_TIME, &time, frame) >= 0);
-	assert_true(param_set(s->state, PARAM_HEAD_POSITION, head, frame) >= 0);
+	if (!s->still)
+		assert_true(param_set(s->state, PARAM_HEAD_POSITION, head, frame) >= 0);
+	if (s->wand) {
+		const float turned[4] = { 0, (float)uniform(s), 0, (float)uniform(s) };
+
+		assert_true(param_set(s->state, PARAM_HEAD_ROTATION, turned, frame) >= 0);
+		assert_true(param_set(s->state, PARAM_WAND_POSITION, head, frame) >= 0);
+		assert_true(param_set(s->state, PARAM_WAND_ROTATION, turned, frame) >= 0);
+	}
 	if (s->join_pending) { /* what the daemon does, so that the light starts equal */
 		assert_true(param_set(s->state, PARAM_GI_EPOCH, &frame, frame) >= 0);
 		s->join_pending = false;

@@ -54,6 +54,7 @@ struct sim {
 	int64_t slow_ns; /* what the way to the nodes takes longer than the way from them */
 	bool probe_group;
 	bool multicast, lamps; /* lamps: the larger parameters change every frame too */
+	bool still, wand;      /* nothing but time changes; all that is tracked does */
 	unsigned evict_frames;
 
 	struct fdp_master *master; /* NULL: dead */

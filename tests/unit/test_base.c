@@ -34,6 +34,42 @@ static void test_cursor_round_trip(void **state)
 	assert_true(gr_reader_done(&r));
 }
 
+/* One form of each number, of either sign; every other one is refused. */
+static void test_cursor_varint(void **state)
+{
+	static const struct { size_t len; uint8_t bytes[11]; } bad[] = {
+		{ 0, { 0 } }, { 1, { 0x80 } }, { 2, { 0x80, 0 } }, { 3, { 0xff, 0x80, 0 } },
+		{ 10, { 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 2 } },
+		{ 11, { 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 1 } },
+	};
+
+	(void)state;
+	for (unsigned bit = 0; bit <= 64; bit++) {
+		for (uint64_t off = 0; off < 3; off++) {
+			const uint64_t v = (bit < 64 ? UINT64_C(1) << bit : 0) + off - 1;
+			uint8_t bytes[GR_VARINT_MOST];
+			struct gr_writer w = gr_writer(bytes, sizeof bytes);
+			struct gr_reader r;
+
+			gr_write_varint(&w, v);
+			assert_true(w.ok);
+			r = gr_reader(bytes, w.len);
+			assert_true(gr_read_varint(&r) == v);
+			assert_true(gr_reader_done(&r));
+			assert_true(gr_zigzag(gr_unzigzag(v)) == v);
+		}
+	}
+	assert_int_equal(gr_zigzag(-1), 1);
+	assert_int_equal(gr_zigzag(1), 2);
+	assert_true(gr_unzigzag(UINT64_MAX) == INT64_MIN);
+	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+		struct gr_reader r = gr_reader(bad[i].bytes, bad[i].len);
+
+		assert_int_equal(gr_read_varint(&r), 0);
+		assert_false(r.ok);
+	}
+}
+
 static void test_cursor_every_short_length(void **state)
 {
 	uint8_t bytes[15];
@@ -185,6 +221,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_cursor_round_trip),
 		cmocka_unit_test(test_plain_numbers),
+		cmocka_unit_test(test_cursor_varint),
 		cmocka_unit_test(test_cursor_every_short_length),
 		cmocka_unit_test(test_pose_algebra),
 		cmocka_unit_test(test_pose_valid),

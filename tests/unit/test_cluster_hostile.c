@@ -32,7 +32,7 @@ static bool spoil_delta(struct sim *s, int to, uint8_t *bytes, size_t len)
 	t->done++;
 	last[-1] ^= 0x10; /* of the last parameter's last element */
 	if (t->also_hash)
-		bytes[FDP_HEADER_BYTES + 16] ^= 1;
+		bytes[FDP_HEADER_BYTES] ^= 1;
 	fdp_wire_seal(&h, s->master->key_to_nodes, bytes);
 	return true;
 }
@@ -89,7 +89,7 @@ static bool spoil_ready(struct sim *s, int to, uint8_t *bytes, size_t len)
 	if (to != -1 || t->done || fdp_gate_open(&gate, bytes, len, &h) != FDP_GOOD)
 		return true;
 	t->done++;
-	bytes[FDP_HEADER_BYTES + 8] ^= 1;
+	bytes[FDP_HEADER_BYTES] ^= 1;
 	fdp_wire_seal(&h, s->master->node_keys[t->target], bytes);
 	return true;
 }

@@ -215,8 +215,10 @@ static void room(void **state)
 	struct fixture *f = *state;
 	struct unit_random r = unit_random_start("room");
 
-	assert_int_equal(full_delta(f, &r), (long)param_delta_max());
-	for (size_t size = 0; size < param_delta_max(); size++)
+	long len = full_delta(f, &r);
+
+	assert_true(len > 0 && (size_t)len <= param_delta_max());
+	for (size_t size = 0; size < (size_t)len; size++)
 		assert_true(param_delta_encode(f->a, 2, f->bytes, size) < 0);
 }
 
@@ -278,11 +280,10 @@ static void bad_deltas(void **state)
 {
 	struct fixture *f = *state;
 	const uint32_t off = 0, curve = 0;
-	uint8_t *entry = f->bytes + PARAM_DELTA_HEAD;
-	const size_t entry_len = PARAM_ENTRY_HEAD + 4;
-	const size_t len = PARAM_DELTA_HEAD + 2 * entry_len;
+	/* base, entries; ids left out, version less base, value; the same again */
+	uint8_t *entry = f->bytes + 2, *second = entry + 6;
+	const size_t entry_len = 6, len = 2 + 2 * entry_len;
 	uint64_t hash;
-	uint8_t swap[PARAM_ENTRY_HEAD + 4];
 
 	assert_int_equal(param_set(f->a, PARAM_GI_ON, &off, 7), GR_OK);
 	assert_int_equal(param_set(f->a, PARAM_TONE_CURVE, &curve, 8), GR_OK);
@@ -291,25 +292,26 @@ static void bad_deltas(void **state)
 #define REFUSED(change, undo) do { change; \
 		assert_int_equal(param_delta_apply(f->b, f->bytes, len), GR_ERR_FORMAT); \
 		assert_untouched(f, hash); undo; } while (0)
-	REFUSED(f->bytes[8] = 1, f->bytes[8] = 2);           /* one entry less than there are */
-	REFUSED(f->bytes[8] = 3, f->bytes[8] = 2);           /* one more */
-	REFUSED(f->bytes[9] = 0xff, f->bytes[9] = 0);        /* more than there are parameters */
+	REFUSED(f->bytes[1] = 1, f->bytes[1] = 2);           /* one entry less than there are */
+	REFUSED(f->bytes[1] = 3, f->bytes[1] = 2);           /* one more */
+	REFUSED(f->bytes[1] = 0x7f, f->bytes[1] = 2);        /* more than there are parameters */
 	REFUSED(entry[0] = PARAM_COUNT, entry[0] = PARAM_GI_ON);
-	REFUSED(entry[0] = PARAM_TONE_CURVE, entry[0] = PARAM_GI_ON); /* twice the same */
-	REFUSED(entry[2] = 5, entry[2] = 7);                 /* not after the base */
-	REFUSED(entry[10] = 2, entry[10] = 0);               /* outside its range */
-	memcpy(swap, entry, entry_len); /* in the wrong order */
-	memcpy(entry, entry + entry_len, entry_len);
-	memcpy(entry + entry_len, swap, entry_len);
-	REFUSED((void)0, (void)0);
-	memcpy(swap, entry, entry_len);
-	memcpy(entry, entry + entry_len, entry_len);
-	memcpy(entry + entry_len, swap, entry_len);
+	REFUSED(second[0] = PARAM_COUNT, second[0] = PARAM_TONE_CURVE - PARAM_GI_ON - 1);
+	REFUSED(entry[1] = 0, entry[1] = 2);                 /* not after the base */
+	REFUSED(entry[2] = 2, entry[2] = 0);                 /* outside its range */
 	assert_int_equal(param_delta_apply(f->b, f->bytes, len), GR_OK);
 	/* Backwards: the state already has a later value. */
 	hash = param_state_hash(f->b, 0);
-	REFUSED(entry[2] = 6, entry[2] = 7);
+	REFUSED(entry[1] = 1, entry[1] = 2);
 #undef REFUSED
+	/* A version beyond all numbers. */
+	{
+		static const uint8_t wraps[] = { 5, 1, PARAM_GI_ON, 0xff, 0xff, 0xff, 0xff, 0xff,
+						 0xff, 0xff, 0xff, 0xff, 1, 0, 0, 0, 0 };
+
+		assert_int_equal(param_delta_apply(f->b, wraps, sizeof wraps), GR_ERR_FORMAT);
+		assert_untouched(f, hash);
+	}
 }
 
 /* Base 0 is the whole truth: what it does not name is back at its default. */
