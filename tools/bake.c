@@ -122,6 +122,13 @@ int command_bake(int argc, char **argv)
 		return GR_EXIT_CONFIG;
 	}
 	result = load_scene(argv[1], &run.file, &run.scene);
+	if (result == GR_OK && run.file->gi.method == SCENE_GI_AUTO)
+		/* the choice is of a GPU's costs, which may be of another machine */
+		fprintf(stderr,
+			"warning: %s: gi.method is \"auto\": a node chooses spacing and links by its GPU and "
+			"bakes again where they differ from these; with gi.method = \"surfels\" what is "
+			"baked here is used\n",
+			argv[1]);
 	if (result == GR_OK)
 		result = get(&run);
 	if (result == GR_OK)

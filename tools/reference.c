@@ -7,8 +7,10 @@
 #include "tools/command.h"
 #include "tools/load.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static void run_finish(struct reference_run *run)
 {
@@ -55,6 +57,27 @@ static int trace(struct reference_run *run, const char *path)
 	if (result == GR_OK && (o->out || o->png))
 		result = reference_picture(run);
 	return result;
+}
+
+/* Before hours of tracing, not after them. false: said on stderr. */
+static bool can_write(const char *path)
+{
+	struct stat status;
+	bool is_there = path && stat(path, &status) == 0;
+	FILE *file;
+
+	/* what is no plain file is opened once only: a pipe's reader would take it for the end */
+	if (!path || (is_there && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)))
+		return true;
+	file = fopen(path, "a");
+	if (!file) {
+		fprintf(stderr, "grotto reference: %s: cannot be written: %s\n", path, strerror(errno));
+		return false;
+	}
+	fclose(file);
+	if (!is_there)
+		remove(path);
+	return true;
 }
 
 /* false: said on stderr. */
@@ -135,6 +158,8 @@ int command_reference(int argc, char **argv)
 	}
 	if (!sound(&o, words))
 		return GR_EXIT_CONFIG;
+	if (!can_write(o.out) || !can_write(o.png) || !can_write(o.points_out))
+		return GR_EXIT_RUNTIME;
 	result = trace(&run, argv[1]);
 	run_finish(&run);
 	if (result == GR_OK)

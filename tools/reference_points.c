@@ -4,6 +4,7 @@
 #include "base/result.h"
 #include "renderer/gi/surfel_bake.h"
 #include "renderer/gi/surfel_store.h"
+#include "renderer/trace/rays.h"
 #include "tools/say.h"
 
 #include <ctype.h>
@@ -49,7 +50,8 @@ static bool parse_point(const char *line, struct reference_point *out)
 	if (n < 6 || after != ',')
 		return false;
 	for (int i = 0; i < 3; i++) {
-		if (!isfinite(out->position[i]) || !isfinite(out->normal[i]))
+		/* NaN is not less either */
+		if (!(fabsf(out->position[i]) <= RAYS_MOST) || !isfinite(out->normal[i]))
 			return false;
 		length += out->normal[i] * out->normal[i];
 	}
@@ -78,15 +80,15 @@ static int read_lines(FILE *file, const char *path, struct points *points)
 		struct reference_point point = { 0 }, *place;
 		bool whole = strchr(line, '\n') || feof(file);
 
-		/* the first line may name the columns */
-		if (line[0] == '#' || line[strspn(line, " \t\r\n")] == '\0')
+		/* the first line may name the columns; NUL bytes do not make an empty one */
+		if (whole && (line[0] == '#' || line[strspn(line, " \t\r\n")] == '\0'))
 			continue;
 		if (!whole || !parse_point(line, &point)) {
 			if (whole && number == 1 && names_columns(line))
 				continue;
-			fprintf(stderr, "%s:%d: not a point: x,y,z,nx,ny,nz are wanted, finite, the "
-					"normal not zero\n",
-				path, number);
+			fprintf(stderr, "%s:%d: not a point: x,y,z,nx,ny,nz are wanted, finite, within "
+					"%.0e m, the normal not zero\n",
+				path, number, (double)RAYS_MOST);
 			return GR_ERR_CONFIG;
 		}
 		if (points->count >= POINTS_MOST) {
