@@ -79,6 +79,7 @@ static void build_rest(struct layout *layout, struct layout_file *file)
 		layout->network.key_file_line = key_line(file->network.at, "key_file");
 	layout->rates = file->rates.rates;
 	layout->swap = file->swap.swap;
+	layout->test = file->test.test;
 	for (size_t i = 0; i < file->tracker_count; i++) {
 		layout->trackers[i] = file->trackers[i].tracker;
 		layout->trackers[i].file = take(&file->trackers[i].tracker.file);

@@ -108,6 +108,12 @@ struct layout_swap {
 	enum layout_orphan orphan;
 };
 
+/* What only a room that is being tested has. */
+struct layout_test {
+	bool faults;       /* grotto faults may disturb it */
+	bool off_loopback; /* and that beyond this machine */
+};
+
 enum layout_tracker_kind { LAYOUT_TRACKER_SIM, LAYOUT_TRACKER_REPLAY };
 
 /* The simulated visitor, see tracking/sim.h for what each does. */
@@ -143,6 +149,7 @@ struct layout {
 	struct layout_network network;
 	struct layout_rates rates;
 	struct layout_swap swap;
+	struct layout_test test;
 	struct layout_tracker *trackers;
 	size_t tracker_count;
 	struct gr_pose start_head; /* T_room_head before a tracker speaks */
@@ -177,7 +184,7 @@ int layout_write(FILE *file, const struct layout *layout);
  * file, up to `room` of them (items may be NULL), and the BLAKE2b-256 of the
  * canonical form of all: walls, nodes (name, wall, part, address, port, eyes), network, rates,
  * start, room, eye separation. Not of paths, comments, the key file, the
- * trackers, the control socket and how far ahead a swap is set (the master's own), nor of target, display,
+ * trackers, the control socket, tests and how far ahead a swap is set (the master's own), nor of target, display,
  * monitor and gpu (one node's own). layout_load has stored it in hash. Returns the
  * number of parts, at most LAYOUT_ITEMS_MAX.
  */

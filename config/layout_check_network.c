@@ -171,6 +171,23 @@ static void check_key(struct options_reader *reader, const struct layout_file *f
 	check_group_key(reader, file);
 }
 
+/* Faults stop walls: nobody is to meet them who is there for the room. */
+static void check_test(struct options_reader *reader, const struct layout_file *file,
+		       const struct endpoint *ends, size_t count)
+{
+	const struct layout_test *test = &file->test.test;
+	bool off = false;
+
+	for (size_t i = 0; i < count; i++)
+		off = off || !address_loopback(&ends[i].address);
+	if (test->faults && off && !test->off_loopback)
+		options_fault(reader, GR_DIAG_ERROR, file->test.at, "faults",
+			      "the room is not on loopback, and faults would stop its walls; if it is for tests "
+			      "say off_loopback = true, too");
+	if (test->off_loopback && !test->faults)
+		options_fault(reader, GR_DIAG_WARNING, file->test.at, "off_loopback", "not used: faults is false");
+}
+
 void layout_check_network(struct options_reader *reader, struct layout_file *file)
 {
 	const struct layout_network *network = &file->network.network;
@@ -207,6 +224,7 @@ void layout_check_network(struct options_reader *reader, struct layout_file *fil
 	check_interface(reader, file);
 	check_loop(reader, file, ends, count);
 	check_key(reader, file, ends, count);
+	check_test(reader, file, ends, count);
 	if (master && !ends[0].address.v4 && network->mtu < MTU_MIN_V6)
 		options_fault(reader, GR_DIAG_ERROR, file->at, "network.mtu",
 			      "%d bytes; IPv6 has at least %d", network->mtu, MTU_MIN_V6);

@@ -146,6 +146,15 @@ static const struct option swap_options[] = {
 	{ .key = NULL },
 };
 
+static const struct option test_options[] = {
+	{ .key = "faults", .type = OPTION_BOOL, .standard = "false", AT(layout_file_test, test.faults),
+	  .help = "whether grotto faults may disturb the room; each daemon then has a control socket" },
+	{ .key = "off_loopback", .type = OPTION_BOOL, .standard = "false",
+	  AT(layout_file_test, test.off_loopback),
+	  .help = "whether it may although machines of the room are not on loopback" },
+	{ .key = NULL },
+};
+
 #define START(key_, unit_, limit, standard_, scale_, member, help_)                         \
 	{ .key = key_, .type = OPTION_FLOAT, .min = -(limit), .max = limit, .unit = unit_,  \
 	  .standard = standard_, .scale = scale_, AT(layout_file_start, member), .help = help_ }
@@ -245,6 +254,8 @@ const struct option layout_options[] = {
 	  .help = "frame rate, barrier, latency" },
 	{ .key = "swap", .type = OPTION_GROUP, AT(layout_file, swap), .group = swap_options,
 	  .help = "when the walls change their picture" },
+	{ .key = "test", .type = OPTION_GROUP, AT(layout_file, test), .group = test_options,
+	  .help = "what only a room that is being tested has" },
 	{ .key = "start", .type = OPTION_GROUP, AT(layout_file, start), .group = start_options,
 	  .help = "where head and wand are before a tracker speaks" },
 	{ .key = "room", .type = OPTION_GROUP, AT(layout_file, room), .group = room_options,

@@ -49,6 +49,11 @@ struct layout_file_swap {
 	struct layout_swap swap;
 };
 
+struct layout_file_test {
+	const config_setting_t *at;
+	struct layout_test test;
+};
+
 struct layout_file_start {
 	const config_setting_t *at;
 	vec3 head, wand;
@@ -81,6 +86,7 @@ struct layout_file {
 	struct layout_file_network network;
 	struct layout_file_rates rates;
 	struct layout_file_swap swap;
+	struct layout_file_test test;
 	struct layout_file_start start;
 	struct layout_file_room room;
 	struct layout_file_tracker *trackers;

@@ -58,6 +58,7 @@ int layout_write(FILE *file, const struct layout *layout)
 	form.network.network = layout->network;
 	form.rates.rates = layout->rates;
 	form.swap.swap = layout->swap;
+	form.test.test = layout->test;
 	glm_vec3_copy((float *)layout->start_head.p, form.start.head);
 	glm_vec3_copy((float *)layout->start_wand.p, form.start.wand);
 	glm_vec3_copy((float *)layout->start_head_angles, form.start.head_angles);

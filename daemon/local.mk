@@ -3,6 +3,7 @@ noinst_LIBRARIES += daemon/libgdaemon.a
 daemon_libgdaemon_a_SOURCES = \
 	daemon/control.c daemon/control.h \
 	daemon/dropped.c daemon/dropped.h \
+	daemon/faults.c daemon/faults.h daemon/faults_control.c \
 	daemon/frame_stats.c daemon/frame_stats.h \
 	daemon/histogram.c daemon/histogram.h \
 	daemon/json.c daemon/json.h \
@@ -45,6 +46,7 @@ daemon_grotto_master_LDADD = $(DAEMON_LIBS)
 
 daemon_grotto_node_SOURCES = \
 	daemon/node.c daemon/node.h \
+	daemon/node_control.c daemon/node_control.h \
 	daemon/node_main.c \
 	daemon/node_report.c \
 	daemon/node_share.c daemon/node_share.h \

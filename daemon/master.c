@@ -51,9 +51,9 @@ static void send_datagram(void *ctx, int to, const uint8_t *bytes, size_t len)
 
 	/* An answer goes back where the question came from, which teaches nothing yet. */
 	if (m->from && to >= 0 && to == fdp_master_answers(m->fdp))
-		net_send_to(m->net, m->from, bytes, len);
+		faults_send_to(m->faults, m->net, m->from, bytes, len);
 	else
-		net_send(m->net, to, bytes, len);
+		faults_send(m->faults, m->net, to, m->params.layout->node_count, bytes, len);
 }
 
 static void node_gone(struct master *m, int node)
@@ -385,7 +385,7 @@ static void receive(struct master *m)
 	int fds[2];
 
 	net_fds(m->net, fds);
-	net_receive(m->net, fds[0], RECEIVE_MOST, on_datagram, m);
+	faults_receive(m->faults, m->net, fds[0], RECEIVE_MOST, on_datagram, m);
 }
 
 static void on_readable(void *ctx, uint32_t events)
@@ -542,6 +542,17 @@ int master_create(struct master **out, struct loop *loop, struct net *net,
 void master_use_recorder(struct master *master, struct recorder *recorder)
 {
 	master->recorder = recorder;
+}
+
+static void on_due(void *ctx)
+{
+	on_readable(ctx, 0);
+}
+
+void master_use_faults(struct master *master, struct faults *faults)
+{
+	master->faults = faults;
+	faults_on_due(faults, on_due, master);
 }
 
 void master_leave(struct master *master)

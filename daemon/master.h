@@ -13,6 +13,7 @@
 #define GROTTO_DAEMON_MASTER_H
 
 #include "daemon/dropped.h"
+#include "daemon/faults.h"
 #include "daemon/frame_stats.h"
 #include "daemon/live_source.h"
 #include "daemon/loop.h"
@@ -45,6 +46,7 @@ struct master {
 	struct master_params params;
 	struct loop *loop;
 	struct net *net;
+	struct faults *faults; /* NULL: the layout allows none */
 	const struct net_address *from; /* of the datagram that is being handled, or NULL */
 	int64_t heard_ns;               /* when it came */
 	struct frame_source *source;
@@ -83,6 +85,8 @@ int master_create(struct master **out, struct loop *loop, struct net *net,
 		  const struct master_params *params);
 /* From now on what happens can be recorded. The recorder is borrowed. */
 void master_use_recorder(struct master *master, struct recorder *recorder);
+/* Before the first frame. Borrowed. */
+void master_use_faults(struct master *master, struct faults *faults);
 /* Begins a recording: as recorder_start. */
 int master_record(struct master *master, const char *path, char *why, size_t size);
 /*

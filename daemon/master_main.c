@@ -33,6 +33,7 @@ struct opened {
 	struct loop *loop;
 	struct net *net;
 	struct master *master;
+	struct faults *faults;
 	struct control *control;
 	struct state_keeper *keeper;
 };
@@ -180,6 +181,10 @@ static int open_all(struct opened *o, const struct master_options *options)
 		return r;
 	fill_params(&params, o, options);
 	r = master_create(&o->master, o->loop, o->net, &params);
+	if (r >= 0 && o->files.layout->test.faults)
+		r = faults_create(&o->faults, o->loop, net_datagram_max(&o->files.layout->network), 0);
+	if (r >= 0 && o->faults)
+		master_use_faults(o->master, o->faults);
 	if (r >= 0 && path)
 		r = control_create(&o->control, o->loop, path, master_answer, o->master);
 	if (r >= 0)
@@ -234,6 +239,7 @@ static void close_all(struct opened *o)
 	master_destroy(&o->master);
 	recorder_destroy(&o->recorder); /* waits for the disk */
 	state_keeper_destroy(&o->keeper);
+	faults_destroy(&o->faults);
 	net_close(&o->net);
 	trackers_close(&o->trackers);
 	replay_source_destroy(&o->replay);

@@ -258,6 +258,7 @@ int master_write_json(const struct master *m, int64_t now_ns, char *text, size_t
 	if (m->params.replay)
 		write_replay(&json, m);
 	write_record(&json, m);
+	faults_write_json(m->faults, &json, "faults");
 	json_close(&json, '}');
 	*out_len = json.len;
 	return json.ok ? GR_OK : GR_ERR_RANGE;
@@ -341,6 +342,8 @@ void master_answer(void *ctx, char *const *words, int count, char *answer, size_
 		answer_step(m, words, count, answer, size);
 	} else if (!strcmp(words[0], "record")) {
 		answer_record(m, words, count, answer, size);
+	} else if (!strcmp(words[0], "faults")) {
+		faults_answer(m->faults, m->params.layout->path, words, count, answer, size);
 	} else if (!strcmp(words[0], "quit") && count == 1) {
 		gr_notice("control: asked to end");
 		answer_ok(answer, size);

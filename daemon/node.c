@@ -24,7 +24,7 @@ static void send_datagram(void *ctx, const uint8_t *bytes, size_t len)
 {
 	struct node *n = ctx;
 
-	net_send(n->net, 0, bytes, len);
+	faults_send(n->faults, n->net, 0, 1, bytes, len);
 }
 
 static void apply_frame(struct node *n, uint64_t frame, int64_t now_ns)
@@ -197,7 +197,7 @@ static void receive(struct node *n)
 	int fds[2], count = net_fds(n->net, fds);
 
 	for (int i = 0; i < count; i++)
-		net_receive(n->net, fds[i], RECEIVE_MOST, on_datagram, n);
+		faults_receive(n->faults, n->net, fds[i], RECEIVE_MOST, on_datagram, n);
 }
 
 static void on_readable(void *ctx, uint32_t events)
@@ -282,6 +282,7 @@ static void start_drawing(struct node *n)
 	n->drawn_hash = n->state_hash;
 	n->drawn_session = fdp_node_session(n->fdp);
 	n->wanted = n->ready = n->drawn = 0;
+	faults_frame(n->faults, n->drawing);
 	node_share_begin(&n->share, n->fdp, n->drawing, n->drawing_ns);
 	r = renderer_draw(n->renderer, &n->frame);
 	if (r < 0) {
@@ -445,6 +446,17 @@ int node_create(struct node **out, struct loop *loop, struct net *net, struct ta
 	on_tick(n, now_ns);
 	*out = n;
 	return GR_OK;
+}
+
+static void on_due(void *ctx)
+{
+	on_readable(ctx, 0);
+}
+
+void node_use_faults(struct node *node, struct faults *faults)
+{
+	node->faults = faults;
+	faults_on_due(faults, on_due, node);
 }
 
 void node_leave(struct node *node)

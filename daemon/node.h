@@ -17,6 +17,7 @@
 
 #include "base/log.h"
 #include "daemon/dropped.h"
+#include "daemon/faults.h"
 #include "daemon/histogram.h"
 #include "daemon/loop.h"
 #include "daemon/node_share.h"
@@ -55,6 +56,7 @@ struct node {
 	struct node_params params;
 	struct loop *loop;
 	struct net *net;
+	struct faults *faults; /* NULL: the layout allows none */
 	struct target *target;
 	struct renderer *renderer;
 	struct pictures *pictures; /* NULL: none are saved */
@@ -91,6 +93,8 @@ struct node {
 int node_create(struct node **out, struct loop *loop, struct net *net, struct target *target,
 		struct renderer *renderer, struct pictures *pictures,
 		const struct node_params *params);
+/* Before node_run. Borrowed. */
+void node_use_faults(struct node *node, struct faults *faults);
 /* Serves until the loop is stopped; enum gr_exit. */
 int node_run(struct node *node);
 /* LEAVE, and the last picture. */

@@ -5,8 +5,10 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/result.h"
+#include "daemon/control.h"
 #include "daemon/json.h"
 #include "daemon/node.h"
+#include "daemon/node_control.h"
 #include "daemon/options.h"
 #include "daemon/priority.h"
 #include "daemon/privileges.h"
@@ -33,6 +35,8 @@ struct opened {
 	struct renderer *renderer;
 	struct pictures *pictures;
 	struct node *node;
+	struct faults *faults;
+	struct control *control;
 	int swap_log; /* -1: none */
 };
 
@@ -199,6 +203,24 @@ static void fill_plan(struct node_params *params, const struct gi_plan *plan)
 	params->plan_error = hundredths(100 * plan->error);
 }
 
+/* A room that is being tested: who may be disturbed must be heard. */
+static int open_faults(struct opened *o)
+{
+	const struct layout *layout = o->files.layout;
+	char path[NODE_CONTROL_PATH];
+	int r;
+
+	if (!layout->test.faults)
+		return GR_OK;
+	r = faults_create(&o->faults, o->loop, net_datagram_max(&layout->network), o->index + 1);
+	if (r < 0)
+		return r;
+	node_use_faults(o->node, o->faults);
+	if (!node_control_path(layout, layout->nodes[o->index].name, path))
+		return GR_OK;
+	return control_create(&o->control, o->loop, path, node_answer, o->node);
+}
+
 static int open_all(struct opened *o, const struct node_options *options)
 {
 	struct renderer_params renderer;
@@ -240,7 +262,8 @@ static int open_all(struct opened *o, const struct node_options *options)
 	memcpy(params.key, o->files.key, sizeof params.key);
 	if (renderer_plan(o->renderer))
 		fill_plan(&params, renderer_plan(o->renderer));
-	return node_create(&o->node, o->loop, o->net, o->target, o->renderer, o->pictures, &params);
+	r = node_create(&o->node, o->loop, o->net, o->target, o->renderer, o->pictures, &params);
+	return r < 0 ? r : open_faults(o);
 }
 
 static int finish(struct opened *o, const char *report, int status)
@@ -265,7 +288,9 @@ static int finish(struct opened *o, const char *report, int status)
 
 static void close_all(struct opened *o)
 {
+	control_destroy(&o->control);
 	node_destroy(&o->node);
+	faults_destroy(&o->faults);
 	pictures_destroy(&o->pictures);
 	if (o->swap_log >= 0)
 		close(o->swap_log);

@@ -30,6 +30,12 @@ tests_unit_test_send_queue_SOURCES = tests/unit/test_send_queue.c tests/unit/uni
 tests_unit_test_send_queue_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_send_queue_LDADD = $(DAEMON_PART_LIBS)
 
+check_PROGRAMS += tests/unit/test_faults
+TESTS += tests/unit/test_faults
+tests_unit_test_faults_SOURCES = tests/unit/test_faults.c tests/unit/unit.h
+tests_unit_test_faults_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_faults_LDADD = $(DAEMON_PART_LIBS)
+
 tests_unit_test_socket_SOURCES = tests/unit/test_socket.c tests/unit/unit.h
 tests_unit_test_socket_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_socket_LDADD = $(DAEMON_PART_LIBS)
@@ -63,10 +69,10 @@ dist_check_SCRIPTS += tests/loopback/forged.sh
 TESTS += tests/loopback/forged.sh
 dist_check_SCRIPTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh \
 	tests/loopback/group.sh tests/loopback/share_survives.sh tests/loopback/kills.sh \
-	tests/loopback/barrier.sh
+	tests/loopback/barrier.sh tests/loopback/faults.sh
 TESTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh \
 	tests/loopback/group.sh tests/loopback/share_survives.sh tests/loopback/kills.sh \
-	tests/loopback/barrier.sh
+	tests/loopback/barrier.sh tests/loopback/faults.sh
 EXTRA_DIST += tests/loopback/room.sh tests/loopback/room.cave.in tests/loopback/cell.scene
 
 check_PROGRAMS += tests/unit/test_trackers

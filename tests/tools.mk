@@ -36,6 +36,7 @@ EXTRA_DIST += \
 	tests/data/bad/bad-lamp-kind.scene \
 	tests/data/bad/empty.cave \
 	tests/data/bad/eye-outside.cave \
+	tests/data/bad/faults-off-loopback.cave \
 	tests/data/bad/host-name.cave \
 	tests/data/bad/left-handed.cave \
 	tests/data/bad/misspelt-wall-key.cave \

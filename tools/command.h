@@ -11,6 +11,7 @@ int command_bench(int argc, char **argv);
 int command_check(int argc, char **argv);
 int command_demo(int argc, char **argv);
 int command_doctor(int argc, char **argv);
+int command_faults(int argc, char **argv);
 int command_key(int argc, char **argv);
 int command_record(int argc, char **argv);
 int command_reference(int argc, char **argv);

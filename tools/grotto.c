@@ -18,6 +18,7 @@ static const struct command {
 	{ "check", command_check, "check layout and scene files, report gaps between walls" },
 	{ "demo", command_demo, "run a whole cave on this machine, leave its pictures and figures" },
 	{ "doctor", command_doctor, "look whether this machine is fit for its part in a room" },
+	{ "faults", command_faults, "disturb a running room on purpose, where its layout allows it" },
 	{ "key", command_key, "make a cluster key" },
 	{ "record", command_record, "record a running room, look at recordings" },
 	{ "reference", command_reference, "path-trace what the renderer should show" },

@@ -28,6 +28,7 @@ tools_grotto_SOURCES = \
 	tools/demo_run.c \
 	tools/demo_summary.c \
 	tools/doctor.c \
+	tools/faults.c \
 	tools/key.c \
 	tools/record.c tools/record_export.c tools/record_info.c tools/record_info.h \
 	tools/reference.c tools/reference.h \

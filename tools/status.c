@@ -136,6 +136,18 @@ static void print_bad(struct json_object *status)
 		printf("\n");
 }
 
+/* Whoever reads the figures must know that they are of a room that is disturbed. */
+static void print_faults(struct json_object *status)
+{
+	struct json_object *faults = report_member(status, "faults");
+
+	if (json_object_get_boolean(report_member(faults, "on")))
+		printf("FAULTS are injected at the master, as asked (grotto faults): %lld lost in, %lld out, %lld "
+		       "late, %lld twice\n", (long long)report_count(faults, "lost_in"),
+		       (long long)report_count(faults, "lost_out"), (long long)report_count(faults, "delayed"),
+		       (long long)report_count(faults, "duplicated"));
+}
+
 static void print_status(struct json_object *status)
 {
 	bool running = json_object_get_boolean(report_member(status, "running"));
@@ -157,6 +169,7 @@ static void print_status(struct json_object *status)
 	print_light(status);
 	print_share(status);
 	print_bad(status);
+	print_faults(status);
 }
 
 static int ask_and_print(const char *socket, bool json)

@@ -68,6 +68,10 @@ void check_files(struct doctor *d)
 
 	findings_add(&d->found, finding(FINDING_OK, "layout %s: %zu walls, %zu nodes", d->layout->path,
 					d->layout->wall_count, d->layout->node_count));
+	if (d->layout->test.faults)
+		findings_add(&d->found,
+			     finding_do(finding(FINDING_WARN, "the layout allows faults to be injected"),
+					"take test.faults out before visitors come"));
 	if (!d->scene) {
 		findings_add(&d->found, finding(FINDING_SKIP, "no scene: --scene FILE names it"));
 		return;
