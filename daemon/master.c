@@ -374,6 +374,7 @@ static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	if (fresh)
 		net_learn(m->net, node, from);
 	fdp_master_peer(m->fdp, (size_t)node, &peer);
+	recorder_shown(m->recorder, now_ns, (unsigned)node, &peer);
 	frame_stats_applied(&m->stats, (unsigned)node, peer.acked, now_ns);
 	if (peer.swapped_frame != 0)
 		frame_stats_swapped(&m->stats, (unsigned)node, peer.swapped_frame,

@@ -199,6 +199,21 @@ void recorder_swap(struct recorder *r, int64_t now_ns, uint64_t frame, int64_t a
 		record_writer_put(r->writer, &entry);
 }
 
+void recorder_shown(struct recorder *r, int64_t now_ns, unsigned node,
+		    const struct fdp_peer_status *peer)
+{
+	struct record_entry entry = { .kind = RECORD_SHOWN, .time_ns = now_ns };
+
+	if (peer->swapped_frame == 0 || !runs(r) || r->shown[node] == peer->swapped_frame)
+		return;
+	r->shown[node] = peer->swapped_frame;
+	entry.shown = (struct record_shown){
+		.node = (uint8_t)node, .frame = peer->swapped_frame,
+		.node_ns = peer->swap_local_ns, .master_ns = peer->swap_ns,
+	};
+	record_writer_put(r->writer, &entry);
+}
+
 static uint8_t event_kind(enum fdp_master_event_kind kind)
 {
 	switch (kind) {

@@ -23,6 +23,7 @@ struct recorder {
 	bool need_whole;
 	bool running; /* when last looked at */
 	int64_t whole_ns;
+	uint64_t shown[FDP_MAX_NODES]; /* last frame that it was said of */
 	enum record_writer_state told; /* last logged */
 };
 
@@ -57,6 +58,9 @@ void recorder_report(struct recorder *recorder, int64_t now_ns, unsigned node, u
 		     const struct fdp_report *report);
 /* at_ns: when the nodes show it; 0: at once. */
 void recorder_swap(struct recorder *recorder, int64_t now_ns, uint64_t frame, int64_t at_ns);
+/* What is known of a node's last swap; said once for each frame. */
+void recorder_shown(struct recorder *recorder, int64_t now_ns, unsigned node,
+		    const struct fdp_peer_status *peer);
 /* FDP_MASTER_SWAP is none of these. */
 void recorder_event(struct recorder *recorder, int64_t now_ns,
 		    const struct fdp_master_event *event);

@@ -150,7 +150,8 @@ static void note(struct csv *csv, const struct record_entry *entry)
 	case RECORD_LOST: note_lost(csv, entry->time_ns, &entry->lost); break;
 	case RECORD_STATE:
 	case RECORD_DELTA:
-	case RECORD_SWAP: break;
+	case RECORD_SWAP:
+	case RECORD_SHOWN: break;
 	}
 	if (csv->frames.file)
 		csv_frames_note(&csv->frames, entry);

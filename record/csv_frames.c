@@ -10,7 +10,7 @@
 void csv_frames_head(FILE *file)
 {
 	fputs("frame,begun_s,applied_s,ready_s,swap_sent_s,swap_at_s,nodes,nodes_ready,nodes_swapped,"
-	      "skew_us,hash,whole,scene_s,tracked,head_x_m,head_y_m,head_z_m,head_qx,head_qy,head_qz,"
+	      "skew_us,skew_raw_us,hash,whole,scene_s,tracked,head_x_m,head_y_m,head_z_m,head_qx,head_qy,head_qz,"
 	      "head_qw,wand_x_m,wand_y_m,wand_z_m,wand_qx,wand_qy,wand_qz,wand_qw,wand_buttons,"
 	      "room_x_m,room_y_m,room_z_m,room_qx,room_qy,room_qz,room_qw\n", file);
 }
@@ -28,6 +28,12 @@ static void write_pose(FILE *file, const struct csv_pose *pose)
 	csv_floats(file, pose->q, 4);
 }
 
+static void write_spread(FILE *file, const struct csv_spread *s)
+{
+	if (s->nodes & (s->nodes - 1)) /* two or more */
+		fprintf(file, "%.3f", ((double)s->last_ns - (double)s->first_ns) * 1e-3);
+}
+
 static void write_row(const struct csv_frames *c, const struct csv_frame *f)
 {
 	FILE *file = c->file;
@@ -39,9 +45,10 @@ static void write_row(const struct csv_frames *c, const struct csv_frame *f)
 	write_time(c, f->sent_ns);
 	write_time(c, f->at_ns);
 	fprintf(file, ",%d,%d,%d,", __builtin_popcountll(f->live), __builtin_popcountll(f->ready),
-		__builtin_popcountll(f->swapped));
-	if (f->swapped & (f->swapped - 1)) /* two or more: there is a spread */
-		fprintf(file, "%.3f", ((double)f->last_swap_ns - (double)f->first_swap_ns) * 1e-3);
+		__builtin_popcountll(f->raw.nodes));
+	write_spread(file, &f->by_master);
+	fputc(',', file);
+	write_spread(file, &f->raw);
 	fprintf(file, ",%016" PRIx64 ",%d,", f->hash, f->whole);
 	if (!f->held) {
 		fputs(",,,,,,,,,,,,,,,,,,,,,,,\n", file);
@@ -116,15 +123,26 @@ static void begin(struct csv_frames *c, const struct record_entry *entry)
 	f->flags = *param_u32(state, PARAM_TRACK_FLAGS);
 }
 
-static void note_swapped(struct csv_frame *f, const struct record_report *p)
+static void widen(struct csv_spread *s, unsigned node, int64_t ns)
 {
-	if (f->swapped & BIT(p->node))
+	if (s->nodes & BIT(node))
 		return;
-	if (!f->swapped || p->swap_ns < f->first_swap_ns)
-		f->first_swap_ns = p->swap_ns;
-	if (!f->swapped || p->swap_ns > f->last_swap_ns)
-		f->last_swap_ns = p->swap_ns;
-	f->swapped |= BIT(p->node);
+	if (!s->nodes || ns < s->first_ns)
+		s->first_ns = ns;
+	if (!s->nodes || ns > s->last_ns)
+		s->last_ns = ns;
+	s->nodes |= BIT(node);
+}
+
+static void note_shown(struct csv_frames *c, const struct record_shown *s)
+{
+	struct csv_frame *f = find(c, s->frame);
+
+	if (!f)
+		return;
+	widen(&f->raw, s->node, s->node_ns);
+	if (s->master_ns != 0)
+		widen(&f->by_master, s->node, s->master_ns);
 }
 
 /* The first word of each node counts; the last node's is the frame's. */
@@ -140,11 +158,8 @@ static void note_report(struct csv_frames *c, const struct record_report *p, int
 {
 	const bool swapped = record_report_name(p->kind)[0] == 's';
 	const bool ready = record_report_name(p->kind)[0] == 'r';
-	struct csv_frame *f = find(c, p->swapped_frame);
+	struct csv_frame *f = swapped ? NULL : find(c, p->frame);
 
-	if (f)
-		note_swapped(f, p);
-	f = swapped ? NULL : find(c, p->frame);
 	if (!f || p->hash != f->hash)
 		return;
 	note_word(&f->acked, &f->acked_ns, p->node, time_ns); /* who is ready holds it, too */
@@ -159,6 +174,7 @@ void csv_frames_note(struct csv_frames *c, const struct record_entry *entry)
 	switch (entry->kind) {
 	case RECORD_STATE:
 	case RECORD_DELTA: begin(c, entry); break;
+	case RECORD_SHOWN: note_shown(c, &entry->shown); break;
 	case RECORD_REPORT: note_report(c, &entry->report, entry->time_ns); break;
 	case RECORD_SWAP:
 		f = find(c, entry->swap.frame);

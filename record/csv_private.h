@@ -11,11 +11,16 @@ struct csv_pose {
 	float p[3], q[4];
 };
 
+struct csv_spread {
+	uint64_t nodes; /* bit per node */
+	int64_t first_ns, last_ns;
+};
+
 struct csv_frame {
 	uint64_t frame; /* 0: unused */
-	uint64_t hash, live, acked, ready, swapped; /* bit per node */
+	uint64_t hash, live, acked, ready; /* bit per node */
 	int64_t begun_ns, sent_ns, at_ns, acked_ns, ready_ns; /* 0: not known */
-	int64_t first_swap_ns, last_swap_ns; /* nodes' clocks */
+	struct csv_spread raw, by_master; /* of the swaps; the nodes' own clocks, the master's */
 	bool whole, held; /* held: the rest is known */
 	uint64_t scene_ns;
 	struct csv_pose head, wand, room;

@@ -176,6 +176,15 @@ static bool read_event(struct gr_reader *r, const struct record_session *session
 	       (e->node < session->node_count || e->node == RECORD_ALL_NODES);
 }
 
+static void write_shown(struct gr_writer *w, const struct record_shown *s)
+{
+	gr_write_u8(w, s->node);
+	gr_write_u8(w, 0);
+	gr_write_u64(w, s->frame);
+	gr_write_u64(w, (uint64_t)s->node_ns);
+	gr_write_u64(w, (uint64_t)s->master_ns);
+}
+
 static void write_body(struct gr_writer *w, const struct record_entry *e)
 {
 	switch (e->kind) {
@@ -193,6 +202,7 @@ static void write_body(struct gr_writer *w, const struct record_entry *e)
 		gr_write_u64(w, e->lost.frames);
 		gr_write_u64(w, (uint64_t)e->lost.since_ns);
 		return;
+	case RECORD_SHOWN: write_shown(w, &e->shown); return;
 	}
 	w->ok = false;
 }
@@ -228,6 +238,19 @@ static bool read_lost(struct gr_reader *r, struct record_lost *l)
 	return gr_reader_done(r) && l->entries > 0 && l->frames <= l->entries && l->since_ns >= 0;
 }
 
+static bool read_shown(struct gr_reader *r, const struct record_session *session,
+		       struct record_shown *s)
+{
+	unsigned reserved;
+
+	s->node = gr_read_u8(r);
+	reserved = gr_read_u8(r);
+	s->frame = gr_read_u64(r);
+	s->node_ns = (int64_t)gr_read_u64(r);
+	s->master_ns = (int64_t)gr_read_u64(r);
+	return gr_reader_done(r) && !reserved && s->node < session->node_count && s->frame > 0;
+}
+
 static bool read_body(struct gr_reader *body, const struct record_session *session,
 		      struct record_entry *out)
 {
@@ -239,6 +262,7 @@ static bool read_body(struct gr_reader *body, const struct record_session *sessi
 	case RECORD_SWAP: return read_swap(body, &out->swap);
 	case RECORD_EVENT: return read_event(body, session, &out->event);
 	case RECORD_LOST: return read_lost(body, &out->lost);
+	case RECORD_SHOWN: return read_shown(body, session, &out->shown);
 	}
 	return false;
 }
@@ -253,7 +277,7 @@ bool record_entry_decode(struct gr_reader *r, const struct record_session *sessi
 
 	out->time_ns = (int64_t)gr_read_u64(r);
 	bytes = gr_read_bytes(r, len);
-	if (!bytes || kind < RECORD_SAMPLE || kind > RECORD_LOST || reserved || out->time_ns < 0 ||
+	if (!bytes || kind < RECORD_SAMPLE || kind > RECORD_SHOWN || reserved || out->time_ns < 0 ||
 	    len > RECORD_BODY_MAX) {
 		r->ok = false;
 		return false;

@@ -105,6 +105,7 @@ enum record_entry_kind {
 	RECORD_SWAP,       /* SWAP went out */
 	RECORD_EVENT,
 	RECORD_LOST,       /* entries that are missing here */
+	RECORD_SHOWN,      /* a node has told that it swapped a frame */
 };
 
 #define RECORD_VALID 1u /* the device had the body */
@@ -157,6 +158,13 @@ struct record_lost {
 	int64_t since_ns; /* of the first */
 };
 
+struct record_shown {
+	uint8_t node;
+	uint64_t frame;
+	int64_t node_ns;   /* its CLOCK_MONOTONIC, as it says */
+	int64_t master_ns; /* the same by the master's, as estimated then; 0: not known */
+};
+
 struct record_entry {
 	enum record_entry_kind kind;
 	int64_t time_ns; /* when it arrived or happened at the master */
@@ -167,6 +175,7 @@ struct record_entry {
 		struct record_swap swap;
 		struct record_event event;
 		struct record_lost lost;
+		struct record_shown shown;
 	};
 };
 

@@ -69,6 +69,7 @@ void record_rules_note(struct record_rules *rules, const struct record_entry *en
 	case RECORD_EVENT: note_event(rules, &entry->event); break;
 	case RECORD_SWAP: note_swap(rules, entry->swap.frame); break;
 	case RECORD_LOST: record_rules_gap(rules); break;
-	case RECORD_SAMPLE: break;
+	case RECORD_SAMPLE:
+	case RECORD_SHOWN: break;
 	}
 }

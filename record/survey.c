@@ -52,6 +52,7 @@ static void note(struct surveyor *v, const struct record_entry *entry)
 	case RECORD_DELTA: note_frame(v, entry); break;
 	case RECORD_REPORT: s->reports[entry->report.node]++; break;
 	case RECORD_SWAP: s->swaps++; break;
+	case RECORD_SHOWN: s->shown[entry->shown.node]++; break;
 	case RECORD_EVENT: s->events[entry->event.kind]++; break;
 	case RECORD_LOST:
 		s->lost += entry->lost.entries;

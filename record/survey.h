@@ -19,7 +19,7 @@ struct record_survey {
 	uint64_t frames_unusable;  /* deltas whose base is missing */
 	bool states_known; /* of this program's parameters; else the last two were not looked at */
 	uint64_t samples[RECORD_TRACKERS], samples_invalid, samples_refused;
-	uint64_t reports[RECORD_NODES];
+	uint64_t reports[RECORD_NODES], shown[RECORD_NODES];
 	uint64_t swaps, events[8]; /* by enum record_event_kind */
 	uint64_t lost, lost_frames; /* given up because the disk was too slow */
 	struct record_rules rules;

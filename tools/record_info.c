@@ -204,6 +204,7 @@ static void add_survey(struct info *info, const struct record_survey *s)
 	add_count(o, "swaps", s->swaps);
 	json_object_object_add(o, "samples", named_counts(&s->session, false, s->samples));
 	json_object_object_add(o, "reports", named_counts(&s->session, true, s->reports));
+	json_object_object_add(o, "shown", named_counts(&s->session, true, s->shown));
 	for (unsigned kind = RECORD_JOINED; kind <= RECORD_SETTING; kind++)
 		add_count(events, record_event_name((uint8_t)kind), s->events[kind]);
 	json_object_object_add(o, "events", events);

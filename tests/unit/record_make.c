@@ -82,6 +82,11 @@ void record_maker_frame(struct record_maker *m, record_maker_put put, void *ctx)
 						   .swap_ns = now_ns - 500 * node, .render_us = 100 };
 		put(ctx, &e);
 	}
+	for (uint8_t node = 0; node < 2 && m->frame > 1; node++) {
+		e = (struct record_entry){ .kind = RECORD_SHOWN, .time_ns = now_ns };
+		e.shown = (struct record_shown){ node, m->frame - 1, now_ns - 500 * node, now_ns - 250 * node };
+		put(ctx, &e);
+	}
 	e = (struct record_entry){ .kind = RECORD_SWAP, .time_ns = now_ns + 5000, .swap = { m->frame, 0 } };
 	put(ctx, &e);
 	if (m->frame == 1) {
