@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#define SANE_NS (INT64_MAX / 4)   /* sums and differences of such stamps cannot overflow */
+#define SANE_NS (INT64_MAX / 16)  /* 18 years: sums and differences of such stamps cannot overflow */
 #define SKEW_MOST 500e-6          /* what the kernel may slew a clock by */
 #define SKEW_PRIOR 50e-6          /* what a crystal is off by */
 #define SKEW_WANDER 0.2e-6        /* with temperature, within the window */
@@ -167,7 +167,7 @@ bool fdp_clock_take(struct fdp_clock *c, const struct fdp_exchange *exchange)
 
 void fdp_clock_estimate(const struct fdp_clock *c, int64_t now_ns, struct fdp_clock_estimate *out)
 {
-	*out = (struct fdp_clock_estimate){ .known = c->since >= FDP_CLOCK_LEAST };
+	*out = (struct fdp_clock_estimate){ .known = c->since >= FDP_CLOCK_LEAST && sane(now_ns) };
 	if (!out->known)
 		return;
 	out->offset_ns = fdp_clock_to_peer(c, now_ns) - now_ns;
