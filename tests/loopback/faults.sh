@@ -53,6 +53,17 @@ before=$(field "$dir/status.json" frame)
 wait_for 60 frame_is_past $((before + 10))
 echo "ok: loss, jitter, duplicates and disorder"
 
+# Beside a running room the doctor asks the master, and knows whose the ports are.
+for role in "--master" "--node front"; do
+	"$grotto" doctor $role --no-gl --json --layout "$dir/room.cave" --scene "$dir/cell.scene" \
+		> "$dir/doctor.log" 2>&1 || fail "grotto doctor $role: $(cat "$dir/doctor.log")"
+	says doctor "allows faults to be injected" || fail "the doctor is silent about test.faults"
+	says doctor "is held by grotto-${role#--}\|is held by grotto-node" || fail "doctor $role: whose port: $(cat "$dir/doctor.log")"
+	says doctor "node front is live" || fail "doctor $role: front: $(cat "$dir/doctor.log")"
+	says doctor "the clock of node front is known to" || fail "doctor $role: clock: $(cat "$dir/doctor.log")"
+done
+echo "ok: the doctor beside a running room"
+
 # The barrier waits half a second.
 faults --node right --stall 900 || fail "stall: $(cat "$dir/faults.log")"
 wait_for 30 says right "stalls for 900 ms, as asked"

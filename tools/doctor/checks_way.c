@@ -55,7 +55,8 @@ void check_ways(struct doctor *d)
 		return;
 	}
 	if (d->node >= 0) {
-		look_at(d, "the master", layout->network.master_address, layout->network.master_port, false, false);
+		look_at(d, "the master", layout->network.master_address, layout->network.master_port,
+			is_live(d, (size_t)d->node), false);
 		return;
 	}
 	for (size_t i = 0; i < layout->node_count; i++) {

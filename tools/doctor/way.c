@@ -217,7 +217,7 @@ struct finding way_judge(const char *who, const char *where, const struct way *w
 		    way->other.answer == WAY_ERROR ? way->other.error : 0;
 
 	if (live)
-		return finding(FINDING_OK, "%s (%s) talks with the master", who, where);
+		return finding(FINDING_OK, "%s (%s) and this side hear each other", who, where);
 	if (way->port.answer == WAY_ECHO)
 		return finding(FINDING_OK, "%s (%s): its doctor answers, there and back in %.0f us", who, where,
 			       (double)way->port.trip_ns * 1e-3);
