@@ -1,27 +1,15 @@
 /*
  * Numbers for the baker: PCG32 (O'Neill 2014) streams, and Owen-scrambled Sobol
- * points in three dimensions for any number of points (Sobol 1967; Burley 2020,
- * with Vegdahl's hash). Each point by itself is uniform, so a mean over any
- * number of them is unbiased. Pure; any thread.
+ * points in three dimensions for any number of points (Sobol 1967; trace/random.h).
+ * Each point by itself is uniform, so a mean over any number of them is unbiased.
+ * Pure; any thread.
  */
 #ifndef GROTTO_RENDERER_GI_SURFEL_RANDOM_H
 #define GROTTO_RENDERER_GI_SURFEL_RANDOM_H
 
+#include "renderer/trace/random.h"
+
 #include <stdint.h>
-
-/* splitmix64's finaliser (Steele et al. 2014). */
-static inline uint64_t random_mix(uint64_t x)
-{
-	x = (x ^ (x >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
-	x = (x ^ (x >> 27)) * UINT64_C(0x94d049bb133111eb);
-	return x ^ (x >> 31);
-}
-
-static inline uint64_t random_start(uint64_t seed, uint64_t item)
-{
-	return random_mix(random_mix(seed + UINT64_C(0x9e3779b97f4a7c15)) ^
-			  (item + UINT64_C(0x9e3779b97f4a7c15)));
-}
 
 static inline uint32_t random_u32(uint64_t *state)
 {
@@ -37,25 +25,6 @@ static inline uint32_t random_u32(uint64_t *state)
 static inline double random_uniform(uint64_t *state)
 {
 	return random_u32(state) * 0x1p-32;
-}
-
-static inline uint32_t sobol_reverse(uint32_t x)
-{
-	x = __builtin_bswap32(x);
-	x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
-	x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
-	return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
-}
-
-/* A nested uniform scramble of bits given in reverse. */
-static inline uint32_t sobol_scramble(uint32_t x, uint32_t seed)
-{
-	x ^= x * 0x3d20adeau;
-	x += seed;
-	x *= (seed >> 16) | 1u;
-	x ^= x * 0x05526c56u;
-	x ^= x * 0x53a22864u;
-	return x;
 }
 
 /*
@@ -80,21 +49,21 @@ static inline void sobol_raw(uint32_t index, uint32_t out[3])
 		b = c;
 	}
 	out[0] = index;
-	out[1] = sobol_reverse(second);
-	out[2] = sobol_reverse(third);
+	out[1] = random_reverse(second);
+	out[2] = random_reverse(third);
 }
 
 /* What scrambles the set of a key. */
 static inline void sobol_seeds(uint64_t key, uint32_t out[3])
 {
 	for (uint32_t d = 0; d < 3; d++)
-		out[d] = (uint32_t)(random_mix(key + d * UINT64_C(0x9e3779b97f4a7c15)) >> 32);
+		out[d] = (uint32_t)(random_mix(key + d * RANDOM_STEP) >> 32);
 }
 
 static inline void sobol_owen(const uint32_t raw[3], const uint32_t seeds[3], float out[3])
 {
 	for (int d = 0; d < 3; d++)
-		out[d] = (float)(sobol_reverse(sobol_scramble(raw[d], seeds[d])) >> 8) * 0x1p-24f;
+		out[d] = random_share(random_scramble(raw[d], seeds[d]));
 }
 
 /* Point `index` of the set of a key; all coordinates in [0, 1). */

@@ -8,7 +8,7 @@ RENDERER_SOURCES += \
 	renderer/trace/lamps.c renderer/trace/lamps.h \
 	renderer/trace/medium.h \
 	renderer/trace/path.c renderer/trace/path.h \
-	renderer/trace/rays.c renderer/trace/rays.h \
+	renderer/trace/random.h renderer/trace/rays.c renderer/trace/rays.h \
 	renderer/trace/reference.c renderer/trace/reference.h \
 	renderer/trace/reference_key.c renderer/trace/reference_private.h \
 	renderer/trace/reference_view.c \
