@@ -240,7 +240,7 @@ void bake_finish(struct bake *bake)
 	free(bake->patch_sums);
 	free(bake->near);
 	free(bake->sobol);
-	free(bake->meets);
+	bake_map_finish(bake);
 	surfel_set_destroy(&bake->set);
 }
 
@@ -252,7 +252,7 @@ int surfel_bake(struct surfel_set **out, const struct scene *scene, const struct
 
 int bake_then(struct surfel_set **out, const struct scene *scene, const struct scene_file *file,
 	      const struct surfel_bake_params *params, struct gr_diag *diag,
-	      void (*then)(const struct bake *bake, void *ctx), void *ctx)
+	      void (*then)(struct bake *bake, void *ctx), void *ctx)
 {
 	struct bake bake = { .scene = scene, .file = file, .params = *params, .diag = diag };
 	int result = check_params(params, diag);

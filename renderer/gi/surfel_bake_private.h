@@ -9,6 +9,8 @@
 #include "renderer/trace/crew.h"
 #include "renderer/trace/world.h"
 
+#include <stdatomic.h>
+
 /* Points a surfel's patch has about. */
 #define BAKE_POINTS_EACH 64
 /* Cosine of the largest angle between the normals of a patch. */
@@ -44,7 +46,13 @@ struct bake_cells {
 struct bake_near {
 	struct v3 position, normal;
 	uint32_t side, patch;
-	float clear; /* m^2 around it from where its patch's surfel is surely seen; -1: nowhere surely */
+	float clear_m; /* around it, from where its patch's surfel is surely seen; -1: nowhere surely */
+};
+
+/* What a ray meets there, and a side's cells from a corner along the two edges (surfel_map.c). */
+struct bake_face {
+	uint32_t first;
+	unsigned corner : 2, meets : 2, across : 14, along : 14;
 };
 
 struct bake {
@@ -82,7 +90,8 @@ struct bake {
 	float *patch_sums;       /* area of the patch up to each */
 
 	uint32_t (*sobol)[3];    /* of each link of a surfel, not yet scrambled */
-	uint8_t *meets;          /* enum bake_meets of each side */
+	struct bake_face *faces; /* of each side: the fronts, and then the backs */
+	_Atomic uint32_t *map;   /* cells of the faces */
 
 	struct surfel_set *set;
 
@@ -114,6 +123,8 @@ int bake_sort_chosen(struct bake *bake);
 int bake_assign(struct bake *bake);
 /* The nearest surfel of the same surface, seen from there; after bake_assign has begun. */
 uint32_t bake_nearest_surfel(const struct bake *bake, const struct bake_point *p);
+/* Nothing between two points, lifted off their surface. */
+bool bake_sees(const struct bake *bake, const struct bake_point *a, const struct bake_point *b);
 /* surfel_patch_data.c: points by patch; area, albedo, taps. */
 int bake_patch_data(struct bake *bake);
 /* A point of patch i at a share 0..1 of its area. */
@@ -140,11 +151,34 @@ void bake_follow(const struct bake *bake, struct v3 from, struct v3 way, uint64_
 		 struct bake_end *out);
 /* A direction about a normal, by the cosine. */
 struct v3 bake_cosine(struct v3 normal, const float u[2]);
-/* The surfel whose patch holds a point of a side; SURFEL_NONE: of none. */
+/*
+ * surfel_owner.c: the surfel whose patch holds a place on a side, SURFEL_NONE: none.
+ * The other one gives up sooner, and says whether places around, on the same side,
+ * all see what makes the position belong to its surfel.
+ */
 uint32_t bake_surfel_at(const struct bake *bake, struct v3 position, uint32_t side);
+uint32_t bake_surfel_around(const struct bake *bake, struct v3 position, uint32_t side,
+			    const struct v3 *rim, int rim_count, bool *out_whole);
+/* Whether a place is seen from a surfel, as its reach has it. */
+bool bake_reaches(const struct bake *bake, uint32_t surfel, struct v3 position);
 /* What a ray meets on a side: nothing that reflects; what every link ends at; the rest. */
 enum bake_meets { BAKE_NOTHING, BAKE_PLAIN, BAKE_GLOSSY };
 enum bake_meets bake_meets(const struct bake *bake, uint32_t side);
+/*
+ * surfel_map.c: for rays by the thousand, the same from a map that remembers. First
+ * all of a batch are looked up, so that memory is asked for early; then each read.
+ */
+struct bake_place {
+	enum bake_meets meets;
+	uint32_t side, cell, at;
+};
+int bake_map(struct bake *bake);
+void bake_map_finish(struct bake *bake);
+void bake_map_expect(const struct bake *bake, size_t count, const struct ray_met *met,
+		     struct bake_place *out);
+/* Of a place that meets BAKE_PLAIN. */
+uint32_t bake_map_read(const struct bake *bake, const struct ray_start *ray,
+		       const struct ray_met *met, const struct bake_place *place);
 /* surfel_start.c: the links' rays, at most BAKE_LINKS_AT_ONCE of a surfel, from link `first` on. */
 #define BAKE_LINKS_AT_ONCE 256
 struct bake_links_rays {
@@ -153,9 +187,8 @@ struct bake_links_rays {
 };
 int bake_link_tables(struct bake *bake);
 void bake_link_rays(const struct bake *bake, size_t i, uint32_t first, struct bake_links_rays *out);
-/* surfel_links.c: all links; those of a surfel, and what mirrors show it. */
+/* surfel_links.c: all links, and what mirrors show surfels; again, the same anew. */
 int bake_links(struct bake *bake);
-void bake_link_surfel(const struct bake *bake, size_t i, uint32_t *links, float light[3]);
 /* surfel_fixed.c; after the links, which bring what mirrors show. */
 int bake_fixed(struct bake *bake);
 /* surfel_probes.c */
@@ -165,12 +198,11 @@ int bake_probes(struct bake *bake);
 int bake_cells_build(struct bake_cells *out, float cell_m, size_t count,
 		     struct v3 (*position)(const void *ctx, size_t i), const void *ctx);
 void bake_cells_finish(struct bake_cells *cells);
-/* The key of a position's cell, which memory is asked for; and that cell's items. */
-uint64_t bake_cells_expect(const struct bake_cells *cells, struct v3 position);
-size_t bake_cells_of(const struct bake_cells *cells, uint64_t key, const uint32_t **out_items);
 /* Items of the cell `step` cells away from that of a position. */
 size_t bake_cells_at(const struct bake_cells *cells, struct v3 position, const int step[3],
 		     const uint32_t **out_items);
+/* m^2, from a position to the cell a step of -1, 0 or 1 away. */
+float bake_cells_square(const struct bake_cells *cells, struct v3 position, const int step[3]);
 
 /* Lengths that go with a spacing. */
 void bake_set_spacing(struct bake *bake, float spacing);
@@ -181,7 +213,7 @@ void bake_finish(struct bake *bake);
 /* As surfel_bake; `then` sees the baker before it goes: for measuring. NULL: none. */
 int bake_then(struct surfel_set **out, const struct scene *scene, const struct scene_file *file,
 	      const struct surfel_bake_params *params, struct gr_diag *diag,
-	      void (*then)(const struct bake *bake, void *ctx), void *ctx);
+	      void (*then)(struct bake *bake, void *ctx), void *ctx);
 
 /* Says how much of the stage is done; false: stop. */
 bool bake_told(struct bake *bake, double done);

@@ -103,25 +103,26 @@ void bake_cells_finish(struct bake_cells *cells)
 	*cells = (struct bake_cells){ 0 };
 }
 
-uint64_t bake_cells_expect(const struct bake_cells *cells, struct v3 position)
+size_t bake_cells_at(const struct bake_cells *cells, struct v3 position, const int step[3],
+		     const uint32_t **out_items)
 {
-	static const int here[3] = { 0, 0, 0 };
-	uint64_t key = cell_key(cells->cell_m, position, here);
-
-	__builtin_prefetch(&cells->slots[home_of(cells, key)]);
-	return key;
-}
-
-size_t bake_cells_of(const struct bake_cells *cells, uint64_t key, const uint32_t **out_items)
-{
-	const struct bake_cell *cell = &cells->slots[find(cells, key)];
+	const struct bake_cell *cell =
+		&cells->slots[find(cells, cell_key(cells->cell_m, position, step))];
 
 	*out_items = cells->items + cell->first;
 	return cell->count;
 }
 
-size_t bake_cells_at(const struct bake_cells *cells, struct v3 position, const int step[3],
-		     const uint32_t **out_items)
+float bake_cells_square(const struct bake_cells *cells, struct v3 position, const int step[3])
 {
-	return bake_cells_of(cells, cell_key(cells->cell_m, position, step), out_items);
+	const float at[3] = { position.x, position.y, position.z };
+	double sum = 0;
+
+	for (int i = 0; i < 3; i++) {
+		double x = (double)at[i] / (double)cells->cell_m + SHIFT, inside = x - floor(x);
+		double away = step[i] > 0 ? 1 - inside : step[i] < 0 ? inside : 0;
+
+		sum += away * away;
+	}
+	return (float)(sum * (double)cells->cell_m * (double)cells->cell_m);
 }

@@ -23,8 +23,7 @@ static bool close_enough(const struct bake *bake, const struct bake_point *a,
 	       off < SAME_PLANE * SURFEL_PLANE * bake->spacing;
 }
 
-/* Nothing between two points lifted off their surface. */
-static bool sees(const struct bake *bake, const struct bake_point *a, const struct bake_point *b)
+bool bake_sees(const struct bake *bake, const struct bake_point *a, const struct bake_point *b)
 {
 	float from[3], to[3];
 
@@ -38,7 +37,7 @@ static bool same_surface(const struct bake *bake, const struct bake_point *a,
 {
 	float square;
 
-	return close_enough(bake, a, b, most_m, &square) && sees(bake, a, b);
+	return close_enough(bake, a, b, most_m, &square) && bake_sees(bake, a, b);
 }
 
 /* Chains of chosen points in hashed cells of the spacing's size; grows. */
@@ -235,7 +234,7 @@ uint32_t bake_nearest_surfel(const struct bake *bake, const struct bake_point *p
 		for (int i = 1; i < count; i++)
 			if (candidates[i].square < candidates[best].square)
 				best = i;
-		if (sees(bake, p, &bake->points[bake->chosen[candidates[best].surfel]]))
+		if (bake_sees(bake, p, &bake->points[bake->chosen[candidates[best].surfel]]))
 			return candidates[best].surfel;
 		candidates[best] = candidates[--count];
 	}
@@ -270,7 +269,25 @@ static float clear_around(const struct bake *bake, const struct bake_point *p)
 		least = fminf(least, surfel->reach[k]);
 	d = v3_sub(p->position, v3_of(surfel->position));
 	left = 0.999f * least / 255 * bake->radius - sqrtf(v3_dot(d, d));
-	return left > 0 ? left * left : -1;
+	return left > 0 ? left : -1;
+}
+
+static void describe_near(void *ctx, size_t begin, size_t end, int thread)
+{
+	struct bake *bake = ctx;
+
+	(void)thread;
+	for (size_t k = begin; k < end; k++) {
+		const struct bake_point *p = &bake->points[bake->cells.items[k]];
+
+		bake->near[k] = (struct bake_near){
+			.position = p->position,
+			.normal = bake_normal(bake, p->side),
+			.side = p->side,
+			.patch = p->patch,
+			.clear_m = clear_around(bake, p),
+		};
+	}
 }
 
 int bake_assign(struct bake *bake)
@@ -288,16 +305,5 @@ int bake_assign(struct bake *bake)
 	bake->near = calloc(bake->point_count + 1, sizeof *bake->near);
 	if (!bake->near)
 		return GR_ERR_NOMEM;
-	for (size_t k = 0; k < bake->point_count; k++) {
-		const struct bake_point *p = &bake->points[bake->cells.items[k]];
-
-		bake->near[k] = (struct bake_near){
-			.position = p->position,
-			.normal = bake_normal(bake, p->side),
-			.side = p->side,
-			.patch = p->patch,
-			.clear = clear_around(bake, p),
-		};
-	}
-	return GR_OK;
+	return bake_run(bake, bake->point_count, 1024, describe_near, bake);
 }

@@ -8,77 +8,110 @@
 
 /* Places in a patch's area from where to look for a point (Chen and Asau 1974). */
 #define GUIDES 64
-/* Points of a patch that memory is asked for beforehand. */
-#define POINTS_EXPECTED (2 * BAKE_POINTS_EACH)
+/* Points of a patch of which more than one link starts about: they are made ready once. */
+#define READY (2 * BAKE_POINTS_EACH)
+
 int bake_link_tables(struct bake *bake)
 {
 	uint32_t count = bake->set->links_each;
 
+	free(bake->sobol);
 	bake->sobol = calloc(count, sizeof *bake->sobol);
-	bake->meets = calloc(2 * bake->triangle_count + 1, sizeof *bake->meets);
-	if (!bake->sobol || !bake->meets)
+	if (!bake->sobol)
 		return GR_ERR_NOMEM;
 	for (uint32_t j = 0; j < count; j++)
 		sobol_raw(j, bake->sobol[j]);
-	for (size_t side = 0; side < 2 * bake->triangle_count; side++)
-		bake->meets[side] = (uint8_t)bake_meets(bake, (uint32_t)side);
-	return GR_OK;
+	return bake_map(bake);
+}
+
+static struct v3 about(const struct v3_frame *frame, const float u[2])
+{
+	float r = sqrtf(u[0]), phi = 2 * TRACE_PI * u[1];
+
+	return v3_from_local(frame, (struct v3){ r * cosf(phi), r * sinf(phi),
+						 sqrtf(larger_of(1 - u[0], 0)) });
 }
 
 struct v3 bake_cosine(struct v3 normal, const float u[2])
 {
 	struct v3_frame frame = v3_frame_of(normal);
-	float r = sqrtf(u[0]), phi = 2 * TRACE_PI * u[1];
 
-	return v3_from_local(&frame, (struct v3){ r * cosf(phi), r * sinf(phi),
-						  sqrtf(fmaxf(1 - u[0], 0)) });
+	return about(&frame, u);
 }
 
-/* For each share k / GUIDES of the area, what bake_patch_point finds. Its points are asked for. */
-static void guide(const struct bake *bake, size_t i, uint32_t guides[GUIDES])
-{
-	uint32_t k = bake->patch_first[i], last = bake->patch_first[i + 1] - 1;
+struct start {
+	struct v3 origin;
+	struct v3_frame frame;
+};
 
-	for (uint32_t at = k; at <= last && at < k + POINTS_EXPECTED; at++)
+static struct start start_at(const struct bake *bake, uint32_t place)
+{
+	const struct bake_point *p = &bake->points[bake->patch_points[place]];
+	struct v3 n = bake_normal(bake, p->side);
+
+	return (struct start){ v3_ahead(p->position, n, bake->offset), v3_frame_of(n) };
+}
+
+struct patch {
+	uint32_t first, last;	    /* places in patch_points */
+	uint32_t guides[GUIDES];    /* for each share k / GUIDES of the area, what bake_patch_point
+				       finds */
+	struct start starts[READY]; /* of the first of its points */
+};
+
+static void make_ready(const struct bake *bake, size_t i, struct patch *out)
+{
+	uint32_t k = out->first = bake->patch_first[i];
+	uint32_t last = out->last = bake->patch_first[i + 1] - 1;
+
+	for (uint32_t at = k; at <= last && at < k + READY; at++)
 		__builtin_prefetch(&bake->points[bake->patch_points[at]]);
 	for (int g = 0; g < GUIDES; g++) {
 		float at = (float)g / GUIDES * bake->set->area[i];
 
 		while (k < last && bake->patch_sums[k] <= at)
 			k++;
-		guides[g] = k;
+		out->guides[g] = k;
 	}
+	for (k = out->first; k <= last && k < out->first + READY; k++)
+		__builtin_prefetch(&bake->normals[bake->points[bake->patch_points[k]].side / 2]);
+	for (k = out->first; k <= last && k < out->first + READY; k++)
+		out->starts[k - out->first] = start_at(bake, k);
 }
 
 /* As bake_patch_point. */
-static uint32_t guided_point(const struct bake *bake, size_t i, const uint32_t guides[GUIDES],
+static uint32_t guided_place(const struct bake *bake, const struct patch *patch, float area,
 			     float share)
 {
-	uint32_t k = guides[(int)(share * GUIDES)], last = bake->patch_first[i + 1] - 1;
-	float at = share * bake->set->area[i];
+	uint32_t k = patch->guides[(int)(share * GUIDES)];
+	float at = share * area;
 
-	while (k < last && bake->patch_sums[k] <= at)
+	while (k < patch->last && bake->patch_sums[k] <= at)
 		k++;
-	return bake->patch_points[k];
+	return k;
 }
 
 void bake_link_rays(const struct bake *bake, size_t i, uint32_t first, struct bake_links_rays *out)
 {
-	uint32_t left = bake->set->links_each - first;
-	uint32_t guides[GUIDES], seeds[3];
+	uint32_t left = bake->set->links_each - first, seeds[3];
+	struct patch patch;
 
 	out->count = left < BAKE_LINKS_AT_ONCE ? left : BAKE_LINKS_AT_ONCE;
-	guide(bake, i, guides);
+	make_ready(bake, i, &patch);
 	sobol_seeds(random_start(bake->params.seed, i), seeds);
 	for (uint32_t k = 0; k < out->count; k++) {
-		const struct bake_point *p;
-		struct v3 n;
+		struct start other;
+		const struct start *start = &other;
+		uint32_t place;
 		float u[3];
 
 		sobol_owen(bake->sobol[first + k], seeds, u);
-		p = &bake->points[guided_point(bake, i, guides, u[2])];
-		n = bake_normal(bake, p->side);
-		v3_put(v3_ahead(p->position, n, bake->offset), out->ray[k].origin);
-		v3_put(bake_cosine(n, u), out->ray[k].direction);
+		place = guided_place(bake, &patch, bake->set->area[i], u[2]);
+		if (place - patch.first < READY)
+			start = &patch.starts[place - patch.first];
+		else
+			other = start_at(bake, place);
+		v3_put(start->origin, out->ray[k].origin);
+		v3_put(about(&start->frame, u), out->ray[k].direction);
 	}
 }

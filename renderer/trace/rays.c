@@ -252,7 +252,7 @@ static void look_behind(const struct rays *rays, const struct ray_start *start, 
 		return;
 	for (int i = 0; i < 3; i++)
 		along += other.normal[i] * start->direction[i];
-	*met = (struct ray_met){ other.distance, other.triangle, along > 0.0f };
+	*met = (struct ray_met){ other.distance, other.triangle, other.u, other.v, along > 0.0f };
 }
 
 static bool shows_back(const struct RTCRayHit *q)
@@ -290,6 +290,8 @@ static void nearest_some(const struct rays *rays, size_t count, const struct ray
 
 		out[k].distance = met ? r->ray.tfar : INFINITY;
 		out[k].triangle = met ? r->hit.primID : RAYS_NONE;
+		out[k].u = r->hit.u;
+		out[k].v = r->hit.v;
 		out[k].back = met && shows_back(r);
 	}
 	for (size_t k = 0; k < count; k++)

@@ -60,6 +60,7 @@ struct ray_start {
 struct ray_met {
 	float distance;
 	uint32_t triangle; /* RAYS_NONE: nothing */
+	float u, v;        /* in it */
 	bool back;         /* of the triangle is what the ray meets */
 };
 void rays_nearest_many(const struct rays *rays, size_t count, const struct ray_start *starts,

@@ -16,53 +16,52 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #define TURNS 5
-#define RACE_RAYS 1000000
-#define PORTION 8 /* surfels, as the baker has them */
+#define AT_ONCE 4096 /* surfels whose rays are kept at once for the bare loop */
+#define PORTION 8    /* surfels, as the baker has them */
+
+/* Of the machine, and of the threads: the first counts, the second bears other work. */
+struct seconds {
+	double wall, processor;
+};
 
 struct race {
 	const struct bake *bake;
-	size_t every, surfels; /* each so-manieth surfel, and how many these are */
+	size_t first; /* surfel of those kept */
 	struct RTCRayHit *rays;
 	RTCScene scene;
-	uint32_t *links;
 };
 
-static void run_baker(void *ctx, size_t begin, size_t end, int thread)
+static struct seconds now(void)
 {
-	const struct race *r = ctx;
-	uint32_t each = r->bake->set->links_each;
+	struct timespec t;
 
-	(void)thread;
-	for (size_t i = begin; i < end; i++) {
-		float light[3] = { 0 };
-
-		bake_link_surfel(r->bake, i * r->every, r->links + i * each, light);
-	}
+	clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+	return (struct seconds){ (double)gr_clock_now(&gr_clock_monotonic) * 1e-9,
+				 (double)t.tv_sec + (double)t.tv_nsec * 1e-9 };
 }
 
-static void run_bare(void *ctx, size_t begin, size_t end, int thread)
+static void add_since(struct seconds *sum, struct seconds start)
 {
-	const struct race *r = ctx;
-	uint32_t each = r->bake->set->links_each;
-	struct RTCIntersectContext context;
+	struct seconds end = now();
 
-	(void)thread;
-	rtcInitIntersectContext(&context);
-	for (size_t k = begin * each; k < end * each; k++)
-		rtcIntersect1(r->scene, &context, &r->rays[k]);
+	sum->wall += end.wall - start.wall;
+	sum->processor += end.processor - start.processor;
 }
 
-/* Those that the baker traces. */
-static void fill_rays(struct race *r)
+/* Those that the baker traces, in its order. */
+static void fill_rays(void *ctx, size_t begin, size_t end, int thread)
 {
+	const struct race *r = ctx;
 	uint32_t each = r->bake->set->links_each;
 	struct bake_links_rays rays;
 
-	for (size_t i = 0; i < r->surfels; i++)
+	(void)thread;
+	for (size_t i = begin; i < end; i++)
 		for (uint32_t first = 0; first < each; first += rays.count) {
-			bake_link_rays(r->bake, i * r->every, first, &rays);
+			bake_link_rays(r->bake, r->first + i, first, &rays);
 			for (uint32_t k = 0; k < rays.count; k++) {
 				const float *from = rays.ray[k].origin, *way = rays.ray[k].direction;
 
@@ -74,6 +73,18 @@ static void fill_rays(struct race *r)
 				};
 			}
 		}
+}
+
+static void trace_rays(void *ctx, size_t begin, size_t end, int thread)
+{
+	const struct race *r = ctx;
+	uint32_t each = r->bake->set->links_each;
+	struct RTCIntersectContext context;
+
+	(void)thread;
+	rtcInitIntersectContext(&context);
+	for (size_t k = begin * each; k < end * each; k++)
+		rtcIntersect1(r->scene, &context, &r->rays[k]);
 }
 
 static RTCScene bare_scene(RTCDevice device, const struct scene *scene)
@@ -96,12 +107,33 @@ static RTCScene bare_scene(RTCDevice device, const struct scene *scene)
 	return bare;
 }
 
-static double seconds(struct race *r, crew_work work)
+/* All of the baker's step: tables, rays, look-ups, and what it writes. */
+static struct seconds run_baker(struct bake *bake)
 {
-	int64_t start = gr_clock_now(&gr_clock_monotonic);
+	struct seconds sum = { 0 }, start;
 
-	crew_run(r->bake->threads, r->surfels, PORTION, work, r, NULL, NULL);
-	return (double)(gr_clock_now(&gr_clock_monotonic) - start) * 1e-9;
+	start = now();
+	if (bake_links(bake) != GR_OK)
+		abort();
+	add_since(&sum, start);
+	return sum;
+}
+
+static struct seconds run_bare(struct race *r)
+{
+	struct seconds sum = { 0 };
+	size_t count = r->bake->set->count;
+
+	for (r->first = 0; r->first < count; r->first += AT_ONCE) {
+		size_t some = count - r->first < AT_ONCE ? count - r->first : AT_ONCE;
+		struct seconds start;
+
+		crew_run(r->bake->threads, some, PORTION, fill_rays, r, NULL, NULL);
+		start = now();
+		crew_run(r->bake->threads, some, PORTION, trace_rays, r, NULL, NULL);
+		add_since(&sum, start);
+	}
+	return sum;
 }
 
 static int by_value(const void *a, const void *b)
@@ -111,38 +143,44 @@ static int by_value(const void *a, const void *b)
 	return *x < *y ? -1 : *x > *y;
 }
 
-static void race(const struct bake *bake, void *ctx)
+static double middle(double values[TURNS])
 {
-	uint32_t each = bake->set->links_each;
-	struct race r = { .bake = bake };
-	double baker[TURNS], bare[TURNS], share[TURNS], count;
+	qsort(values, TURNS, sizeof *values, by_value);
+	return values[TURNS / 2];
+}
+
+static void race(struct bake *bake, void *ctx)
+{
+	size_t each = bake->set->links_each;
+	double count = (double)(bake->set->count * each);
+	double baker[TURNS], bare[TURNS], share[TURNS], processor[TURNS];
 	RTCDevice device = rtcNewDevice("set_affinity=0");
+	struct race r = { .bake = bake };
 
 	(void)ctx;
-	r.every = 1 + bake->set->count * each / RACE_RAYS;
-	r.surfels = (bake->set->count + r.every - 1) / r.every;
-	r.rays = calloc(r.surfels * each, sizeof *r.rays);
-	r.links = calloc(r.surfels * each, sizeof *r.links);
-	if (!r.rays || !r.links || !device)
+	r.rays = calloc(AT_ONCE * each, sizeof *r.rays);
+	if (!r.rays || !device)
 		abort();
 	r.scene = bare_scene(device, bake->scene);
-	count = (double)(r.surfels * each);
 	for (int turn = 0; turn < TURNS; turn++) {
-		baker[turn] = count / seconds(&r, run_baker);
-		fill_rays(&r);
-		bare[turn] = count / seconds(&r, run_bare);
-		share[turn] = baker[turn] / bare[turn];
+		struct seconds a = run_baker(bake), b = run_bare(&r);
+
+		baker[turn] = 1e-6 * count / a.wall;
+		bare[turn] = 1e-6 * count / b.wall;
+		share[turn] = 100 * b.wall / a.wall;
+		processor[turn] = 100 * b.processor / a.processor;
 	}
-	qsort(baker, TURNS, sizeof *baker, by_value);
-	qsort(bare, TURNS, sizeof *bare, by_value);
-	qsort(share, TURNS, sizeof *share, by_value);
-	printf("  links (rays made, traced, looked up) %.3f million rays/s, bare rtcIntersect1 over the same %.0f rays %.3f: %.0f %% (%.0f..%.0f in %d turns)\n",
-	       baker[TURNS / 2] * 1e-6, count, bare[TURNS / 2] * 1e-6, 100 * share[TURNS / 2],
-	       100 * share[0], 100 * share[TURNS - 1], TURNS);
+	printf("  links: %.0f rays, %.3f million/s made, traced and looked up, %.3f by bare rtcIntersect1\n",
+	       count, middle(baker), middle(bare));
+	middle(share);
+	middle(processor);
+	printf("  share %.0f %% (%.0f..%.0f in %d turns)", share[TURNS / 2], share[0], share[TURNS - 1],
+	       TURNS);
+	printf("; of processor time %.0f %% (%.0f..%.0f)\n", processor[TURNS / 2], processor[0],
+	       processor[TURNS - 1]);
 	rtcReleaseScene(r.scene);
 	rtcReleaseDevice(device);
 	free(r.rays);
-	free(r.links);
 }
 
 static int measure(const struct scene *scene)
