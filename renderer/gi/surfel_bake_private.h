@@ -92,6 +92,7 @@ struct bake {
 	uint32_t (*sobol)[3];    /* of each link of a surfel, not yet scrambled */
 	struct bake_face *faces; /* of each side: the fronts, and then the backs */
 	_Atomic uint32_t *map;   /* cells of the faces */
+	_Atomic uint32_t *map_beyond; /* of those that a wall parts, what is on its other side */
 
 	struct surfel_set *set;
 
@@ -153,8 +154,8 @@ void bake_follow(const struct bake *bake, struct v3 from, struct v3 way, uint64_
 struct v3 bake_cosine(struct v3 normal, const float u[2]);
 /*
  * surfel_owner.c: the surfel whose patch holds a place on a side, SURFEL_NONE: none.
- * The other one gives up sooner, and says whether places around, on the same side,
- * all see what makes the position belong to its surfel.
+ * The other one says too whether places around, on the same side, all see what makes
+ * the position belong to its surfel; false: it is in doubt.
  */
 uint32_t bake_surfel_at(const struct bake *bake, struct v3 position, uint32_t side);
 uint32_t bake_surfel_around(const struct bake *bake, struct v3 position, uint32_t side,
@@ -171,11 +172,15 @@ enum bake_meets bake_meets(const struct bake *bake, uint32_t side);
 struct bake_place {
 	enum bake_meets meets;
 	uint32_t side, cell, at;
+	bool looks_up; /* for this ray or for its cell */
+	size_t slot;   /* of the points around, then */
 };
+/* Places that are expected at once: what memory is asked for stays in the caches. */
+#define BAKE_PLACES 32
 int bake_map(struct bake *bake);
 void bake_map_finish(struct bake *bake);
-void bake_map_expect(const struct bake *bake, size_t count, const struct ray_met *met,
-		     struct bake_place *out);
+void bake_map_expect(const struct bake *bake, size_t count, const struct ray_start *rays,
+		     const struct ray_met *met, struct bake_place *out);
 /* Of a place that meets BAKE_PLAIN. */
 uint32_t bake_map_read(const struct bake *bake, const struct ray_start *ray,
 		       const struct ray_met *met, const struct bake_place *place);
@@ -201,6 +206,8 @@ void bake_cells_finish(struct bake_cells *cells);
 /* Items of the cell `step` cells away from that of a position. */
 size_t bake_cells_at(const struct bake_cells *cells, struct v3 position, const int step[3],
 		     const uint32_t **out_items);
+/* The slot from which a position's cell will be looked for; memory is asked for it. */
+size_t bake_cells_expect(const struct bake_cells *cells, struct v3 position);
 /* m^2, from a position to the cell a step of -1, 0 or 1 away. */
 float bake_cells_square(const struct bake_cells *cells, struct v3 position, const int step[3]);
 

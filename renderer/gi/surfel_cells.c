@@ -113,13 +113,23 @@ size_t bake_cells_at(const struct bake_cells *cells, struct v3 position, const i
 	return cell->count;
 }
 
+size_t bake_cells_expect(const struct bake_cells *cells, struct v3 position)
+{
+	static const int here[3] = { 0, 0, 0 };
+	size_t slot = home_of(cells, cell_key(cells->cell_m, position, here));
+
+	__builtin_prefetch(&cells->slots[slot]);
+	return slot;
+}
+
 float bake_cells_square(const struct bake_cells *cells, struct v3 position, const int step[3])
 {
 	const float at[3] = { position.x, position.y, position.z };
 	double sum = 0;
 
 	for (int i = 0; i < 3; i++) {
-		double x = (double)at[i] / (double)cells->cell_m + SHIFT, inside = x - floor(x);
+		double x = (double)at[i] / (double)cells->cell_m + SHIFT;
+		double past = x - (double)(int64_t)x, inside = past < 0 ? past + 1 : past;
 		double away = step[i] > 0 ? 1 - inside : step[i] < 0 ? inside : 0;
 
 		sum += away * away;

@@ -20,27 +20,37 @@ static uint32_t link_glossy(const struct bake *bake, const struct ray_start *ray
 	return found.surfel;
 }
 
+/* Links first..first+count-1 of those of a surfel, whose rays have met something. */
+static void look_up(const struct bake *bake, uint32_t count, const struct ray_start *rays,
+		    const struct ray_met *met, uint64_t key, uint32_t first, uint32_t *links,
+		    float light[3])
+{
+	struct bake_place places[BAKE_PLACES];
+
+	bake_map_expect(bake, count, rays, met, places);
+	for (uint32_t k = 0; k < count; k++) {
+		uint32_t j = first + k;
+
+		links[j] = SURFEL_NONE;
+		if (places[k].meets == BAKE_PLAIN)
+			links[j] = bake_map_read(bake, &rays[k], &met[k], &places[k]);
+		else if (places[k].meets == BAKE_GLOSSY)
+			links[j] = link_glossy(bake, &rays[k], random_mix(key + j), light);
+	}
+}
+
 static void link_surfel(const struct bake *bake, size_t i, uint32_t *links, float light[3])
 {
 	uint64_t key = random_start(bake->params.seed, i);
 	struct ray_met met[BAKE_LINKS_AT_ONCE];
 	struct bake_links_rays rays;
-	struct bake_place places[BAKE_LINKS_AT_ONCE];
 
 	for (uint32_t first = 0; first < bake->set->links_each; first += rays.count) {
 		bake_link_rays(bake, i, first, &rays);
 		rays_nearest_many(bake->world.rays, rays.count, rays.ray, met);
-		bake_map_expect(bake, rays.count, met, places);
-		for (uint32_t k = 0; k < rays.count; k++) {
-			uint32_t j = first + k;
-
-			links[j] = SURFEL_NONE;
-			if (places[k].meets == BAKE_PLAIN)
-				links[j] = bake_map_read(bake, &rays.ray[k], &met[k], &places[k]);
-			else if (places[k].meets == BAKE_GLOSSY)
-				links[j] =
-					link_glossy(bake, &rays.ray[k], random_mix(key + j), light);
-		}
+		for (uint32_t k = 0; k < rays.count; k += BAKE_PLACES)
+			look_up(bake, rays.count - k < BAKE_PLACES ? rays.count - k : BAKE_PLACES,
+				rays.ray + k, met + k, key, first + k, links, light);
 	}
 }
 

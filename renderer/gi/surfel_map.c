@@ -4,6 +4,8 @@
  * one surfel, and whose rim that surfel reaches, is that surfel's. Of the others,
  * those with a wall in them and those without points, a cell is filled when a ray
  * first meets it, whichever that is: what it holds depends on its place alone.
+ * Triangles so small that few rays meet them have no cells; there each ray is
+ * looked up by itself.
  */
 #include "renderer/gi/surfel_bake_private.h"
 
@@ -17,6 +19,9 @@
 /* Its rim is looked at a little inside: what ends at a wall is not behind it. */
 #define RIM 0.95f
 #define CELLS_MOST 0x3fffu /* along an edge */
+/* Of the rays that may be expected in a cell; fewer do not pay for filling it. */
+#define RAYS_LEAST 3.0f
+#define FETCH_MOST 512 /* bytes of points that are asked for; those of a flat wall */
 
 /* In a cell: nothing yet; that each place must be looked up; else a surfel + FIRST_SURFEL. */
 enum { UNKNOWN, EACH, FIRST_SURFEL };
@@ -26,7 +31,8 @@ enum { UNKNOWN, EACH, FIRST_SURFEL };
  * several. */
 #define POINT (1u << 31)
 #define SEVERAL EACH
-
+/* The cell of a place on a triangle that has none. */
+#define NOWHERE UINT32_MAX
 static size_t face_of(const struct bake *bake, uint32_t side)
 {
 	/* fronts together: backs are seldom seen */
@@ -70,8 +76,15 @@ static unsigned cells_along(float n)
 	return n > (float)CELLS_MOST ? CELLS_MOST : n > 1 ? (unsigned)n : 1;
 }
 
-/* How many cells a side of a triangle has. */
-static size_t divide(const struct bake *bake, size_t triangle, float width, struct bake_face *face)
+static float rays_in(const struct bake *bake, size_t triangle, size_t cells)
+{
+	double rays = (double)bake->set->count * (double)bake->set->links_each;
+
+	return (float)(rays * (double)bake->areas[triangle] / bake->area) / (float)cells;
+}
+
+/* Cells of a side of a triangle; none where they do not pay. */
+static void divide(const struct bake *bake, size_t triangle, float width, struct bake_face *face)
 {
 	float n[2], most, shrink;
 
@@ -83,7 +96,8 @@ static size_t divide(const struct bake *bake, size_t triangle, float width, stru
 	shrink = n[0] * n[1] > most ? sqrtf(most / (n[0] * n[1])) : 1;
 	face->across = cells_along(shrink * n[0]) & CELLS_MOST;
 	face->along = cells_along(shrink * n[1]) & CELLS_MOST;
-	return (size_t)face->across * face->along;
+	if (rays_in(bake, triangle, (size_t)face->across * face->along) < RAYS_LEAST)
+		face->across = face->along = 0;
 }
 
 struct division {
@@ -195,7 +209,7 @@ static void sow_side(const struct bake *bake, size_t begin, size_t end)
 	uint32_t side = bake->points[begin].side;
 	const struct bake_face *face = &bake->faces[face_of(bake, side)];
 
-	if (face->meets != BAKE_PLAIN)
+	if (face->meets != BAKE_PLAIN || face->across == 0)
 		return;
 	/* a point for now */
 	for (size_t i = begin; i < end; i++) {
@@ -258,7 +272,9 @@ int bake_map(struct bake *bake)
 	if (result != GR_OK)
 		return result;
 	bake->map = calloc(d.count + 1, sizeof *bake->map);
-	if (!bake->map)
+	/* few are touched, and memory is taken for those only */
+	bake->map_beyond = calloc(d.count + 1, sizeof *bake->map_beyond);
+	if (!bake->map || !bake->map_beyond)
 		return GR_ERR_NOMEM;
 	return bake_run(bake, bake->point_count, 4096, sow, bake);
 }
@@ -267,13 +283,15 @@ void bake_map_finish(struct bake *bake)
 {
 	free(bake->faces);
 	free(bake->map);
+	free(bake->map_beyond);
 	bake->faces = NULL;
 	bake->map = NULL;
+	bake->map_beyond = NULL;
 }
 
 /*
  * What a cell without points holds, and one whose rim may be behind a wall: the
- * surfel of its middle, when nothing stands between that and all of the cell.
+ * surfel of its middle; all of it where nothing stands between that and the rim.
  */
 static uint32_t ask(const struct bake *bake, uint32_t side, const struct bake_face *face,
 		    unsigned cell)
@@ -285,13 +303,78 @@ static uint32_t ask(const struct bake *bake, uint32_t side, const struct bake_fa
 	if (!extent_of(bake, side, face, cell, &e))
 		return EACH;
 	surfel = bake_surfel_around(bake, e.middle, side, e.rim, e.rim_count, &whole);
-	if (surfel == SURFEL_NONE)
-		return EACH;
-	return (surfel + FIRST_SURFEL) | (whole ? 0 : IN_PART);
+	return surfel == SURFEL_NONE ? EACH : (surfel + FIRST_SURFEL) | (whole ? 0 : IN_PART);
 }
 
-void bake_map_expect(const struct bake *bake, size_t count, const struct ray_met *met,
-		     struct bake_place *out)
+/* In a cell that a wall parts: the surfel of the first place on its rim that another one does
+ * not reach. */
+static uint32_t ask_beyond(const struct bake *bake, uint32_t side, const struct bake_face *face,
+			   unsigned cell, uint32_t surfel)
+{
+	struct extent e;
+
+	extent_of(bake, side, face, cell, &e);
+	for (int k = 0; k < e.rim_count; k++)
+		if (!bake_reaches(bake, surfel, e.rim[k])) {
+			surfel = bake_surfel_at(bake, e.rim[k], side);
+			return surfel == SURFEL_NONE ? EACH : surfel + FIRST_SURFEL;
+		}
+	return EACH;
+}
+
+static struct v3 met_at(const struct ray_start *ray, const struct ray_met *met)
+{
+	return v3_ahead(v3_of(ray->origin), v3_of(ray->direction), met->distance);
+}
+
+/* Of a hit on a side that is plain: which cell, and that it will be read. */
+static void find_cell(const struct bake *bake, const struct bake_face *face,
+		      const struct ray_met *met, struct bake_place *out)
+{
+	out->at = NOWHERE;
+	if (face->across == 0)
+		return;
+	out->cell = cell_of(face, met->u, met->v);
+	out->at = face->first + out->cell;
+	__builtin_prefetch(&bake->map[out->at]);
+}
+
+static bool must_look_up(const struct bake *bake, const struct bake_place *place)
+{
+	uint32_t holds;
+
+	if (place->meets != BAKE_PLAIN || place->at == NOWHERE)
+		return place->meets == BAKE_PLAIN;
+	holds = atomic_load_explicit(&bake->map[place->at], memory_order_relaxed);
+	return holds == UNKNOWN || holds == EACH;
+}
+
+/* Memory is asked for what bake_surfel_at reads. */
+static void expect_points(const struct bake *bake, size_t count, const struct ray_start *rays,
+			  const struct ray_met *met, struct bake_place *out)
+{
+	for (size_t k = 0; k < count; k++) {
+		out[k].looks_up = must_look_up(bake, &out[k]);
+		if (!out[k].looks_up)
+			continue;
+		out[k].slot = bake_cells_expect(&bake->cells, met_at(&rays[k], &met[k]));
+		__builtin_prefetch(&bake->normals[met[k].triangle]);
+	}
+	for (size_t k = 0; k < count; k++) {
+		const struct bake_cell *cell;
+		size_t bytes;
+
+		if (!out[k].looks_up)
+			continue;
+		cell = &bake->cells.slots[out[k].slot];
+		bytes = cell->count * sizeof *bake->near;
+		for (size_t at = 0; at < bytes && at < FETCH_MOST; at += 64)
+			__builtin_prefetch((const char *)(bake->near + cell->first) + at);
+	}
+}
+
+void bake_map_expect(const struct bake *bake, size_t count, const struct ray_start *rays,
+		     const struct ray_met *met, struct bake_place *out)
 {
 	for (size_t k = 0; k < count; k++) {
 		out[k].side = met[k].triangle == RAYS_NONE ? SURFEL_NONE
@@ -307,29 +390,47 @@ void bake_map_expect(const struct bake *bake, size_t count, const struct ray_met
 			continue;
 		face = &bake->faces[face_of(bake, out[k].side)];
 		out[k].meets = (enum bake_meets)face->meets;
-		if (face->meets != BAKE_PLAIN)
-			continue;
-		out[k].cell = cell_of(face, met[k].u, met[k].v);
-		out[k].at = face->first + out[k].cell;
-		__builtin_prefetch(&bake->map[out[k].at]);
+		if (face->meets == BAKE_PLAIN)
+			find_cell(bake, face, &met[k], &out[k]);
 	}
+	expect_points(bake, count, rays, met, out);
+}
+
+/* In a cell that a wall parts. */
+static uint32_t read_part(const struct bake *bake, struct v3 position,
+			  const struct bake_place *place, uint32_t surfel)
+{
+	_Atomic uint32_t *beyond = &bake->map_beyond[place->at];
+	uint32_t holds;
+
+	if (bake_reaches(bake, surfel, position))
+		return surfel;
+	holds = atomic_load_explicit(beyond, memory_order_relaxed);
+	if (holds == UNKNOWN) {
+		holds = ask_beyond(bake, place->side, &bake->faces[face_of(bake, place->side)],
+				   place->cell, surfel);
+		atomic_store_explicit(beyond, holds, memory_order_relaxed);
+	}
+	if (holds != EACH && bake_reaches(bake, holds - FIRST_SURFEL, position))
+		return holds - FIRST_SURFEL;
+	return bake_surfel_at(bake, position, place->side);
 }
 
 uint32_t bake_map_read(const struct bake *bake, const struct ray_start *ray,
 		       const struct ray_met *met, const struct bake_place *place)
 {
-	uint32_t holds = atomic_load_explicit(&bake->map[place->at], memory_order_relaxed);
-	struct v3 position;
+	uint32_t holds = EACH;
 
+	if (place->at != NOWHERE)
+		holds = atomic_load_explicit(&bake->map[place->at], memory_order_relaxed);
 	if (holds == UNKNOWN) {
 		holds = ask(bake, place->side, &bake->faces[face_of(bake, place->side)],
 			    place->cell);
 		atomic_store_explicit(&bake->map[place->at], holds, memory_order_relaxed);
 	}
-	if (holds != EACH && !(holds & IN_PART))
-		return holds - FIRST_SURFEL;
-	position = v3_ahead(v3_of(ray->origin), v3_of(ray->direction), met->distance);
-	if (holds != EACH && bake_reaches(bake, (holds & ~IN_PART) - FIRST_SURFEL, position))
-		return (holds & ~IN_PART) - FIRST_SURFEL;
-	return bake_surfel_at(bake, position, place->side);
+	if (holds == EACH)
+		return bake_surfel_at(bake, met_at(ray, met), place->side);
+	if (holds & IN_PART)
+		return read_part(bake, met_at(ray, met), place, (holds & ~IN_PART) - FIRST_SURFEL);
+	return holds - FIRST_SURFEL;
 }

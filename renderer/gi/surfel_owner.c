@@ -135,8 +135,9 @@ uint32_t bake_surfel_around(const struct bake *bake, struct v3 position, uint32_
 	float square;
 	const struct bake_near *near = nearest_here(bake, position, side, &square);
 
+	*out_whole = false;
 	if (!near || near->patch == SURFEL_NONE || !belongs(bake, near, position, side, square))
-		return SURFEL_NONE;
+		return search(bake, position, side, near, square);
 	*out_whole = true;
 	for (int k = 0; k < rim_count && *out_whole; k++) {
 		struct v3 d = v3_sub(rim[k], near->position);

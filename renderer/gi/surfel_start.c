@@ -24,12 +24,32 @@ int bake_link_tables(struct bake *bake)
 	return bake_map(bake);
 }
 
+/*
+ * Cosine and sine of a share 0..1 of a full turn, within 2e-7: the quarter turn that is
+ * nearest, and Cephes' polynomials (Moshier) for what is left. Sooner than libm's,
+ * and equal on every machine.
+ */
+static void turn(float share, float *out_cos, float *out_sin)
+{
+	int quarter = (int)(4 * share + 0.5f);
+	float x = 2 * TRACE_PI * (share - 0.25f * (float)quarter), z = x * x;
+	float s = x + x * z * (-1.6666654611e-1f + z * (8.3321608736e-3f - z * 1.9515295891e-4f));
+	float c = 1 - 0.5f * z +
+		  z * z *
+			  (4.166664568298827e-2f +
+			   z * (-1.388731625493765e-3f + z * 2.443315711809948e-5f));
+	float along = quarter & 1 ? s : c, across = quarter & 1 ? c : s;
+
+	*out_cos = (quarter + 1) & 2 ? -along : along;
+	*out_sin = quarter & 2 ? -across : across;
+}
+
 static struct v3 about(const struct v3_frame *frame, const float u[2])
 {
-	float r = sqrtf(u[0]), phi = 2 * TRACE_PI * u[1];
+	float r = sqrtf(u[0]), c, s;
 
-	return v3_from_local(frame, (struct v3){ r * cosf(phi), r * sinf(phi),
-						 sqrtf(larger_of(1 - u[0], 0)) });
+	turn(u[1], &c, &s);
+	return v3_from_local(frame, (struct v3){ r * c, r * s, sqrtf(larger_of(1 - u[0], 0)) });
 }
 
 struct v3 bake_cosine(struct v3 normal, const float u[2])
