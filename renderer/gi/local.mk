@@ -14,7 +14,8 @@ RENDERER_SOURCES += \
 	renderer/gi/sectors.c renderer/gi/sectors.h \
 	renderer/gi/surface.c renderer/gi/surface.h \
 	renderer/gi/surfel_bake.c renderer/gi/surfel_bake.h renderer/gi/surfel_bake_private.h \
-	renderer/gi/surfel_cells.c renderer/gi/surfel_count.c renderer/gi/surfel_count.h renderer/gi/surfel_fixed.c renderer/gi/surfel_links.c renderer/gi/surfel_map.c \
+	renderer/gi/surfel_cells.c renderer/gi/surfel_count.c renderer/gi/surfel_count.h renderer/gi/surfel_fixed.c renderer/gi/surfel_links.c \
+	renderer/gi/surfel_map.c renderer/gi/surfel_map.h renderer/gi/surfel_map_cells.c \
 	renderer/gi/surfel_material.c renderer/gi/surfel_owner.c \
 	renderer/gi/surfel_patch_data.c renderer/gi/surfel_patches.c renderer/gi/surfel_points.c renderer/gi/surfel_probes.c \
 	renderer/gi/surfel_file.c renderer/gi/surfel_file.h renderer/gi/surfel_file_check.c renderer/gi/surfel_file_private.h \
