@@ -249,8 +249,9 @@ static void send_delta(struct fdp_master *m, int to)
 
 static void send_delta_to(struct fdp_master *m, uint64_t live)
 {
-	if (m->group) {
-		send_delta(m, FDP_TO_GROUP);
+	if (m->group || count_bits(live) == m->params.node_count) {
+		/* To each of them the same datagram, signed once. */
+		send_delta(m, fdp_master_all(m));
 		return;
 	}
 	for (size_t i = 0; i < m->params.node_count; i++)

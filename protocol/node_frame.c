@@ -13,7 +13,8 @@ void fdp_node_frame_reset(struct fdp_node *n)
 	n->current = (struct fdp_node_frame){ 0 };
 	n->swapped_frame = n->swapped_count = 0;
 	n->swap_ns = 0;
-	n->nacked_ns = 0;
+	n->nacked_ns = n->gap_ns = 0;
+	n->repair = (struct fdp_trip){ 0, 0 };
 	n->wait_ns = n->retry_ns;
 	n->lost = 0;
 	fdp_node_clock_reset(n);
@@ -50,6 +51,8 @@ static void send_ready(struct fdp_node *n, int64_t now_ns)
 static void send_nack(struct fdp_node *n, const struct fdp_nack *nack, int64_t now_ns)
 {
 	n->nacked_ns = now_ns;
+	if (nack->count && nack->message == n->delta.message && !n->gap_ns)
+		n->gap_ns = now_ns;
 	for (int i = 0; i < (n->twice ? 2 : 1); i++)
 		fdp_outbox_send(&n->out, FDP_TO_ALL, FDP_NACK,
 				fdp_nack_encode(nack, fdp_outbox_body(&n->out), FDP_BODY_MAX));
@@ -190,12 +193,29 @@ static void nack_gap(struct fdp_node *n, struct fdp_reassembly *r, unsigned inde
 		send_nack(n, &nack, now_ns);
 }
 
-static void nack_missing(struct fdp_node *n, const struct fdp_reassembly *r, int64_t now_ns)
+/* Fragments under `below`. */
+static void nack_missing(struct fdp_node *n, const struct fdp_reassembly *r, unsigned below,
+			 int64_t now_ns)
 {
 	struct fdp_nack nack = { .message = r->message, .count = r->count };
 
-	if (fdp_reassembly_missing(r, r->count, nack.missing))
+	if (fdp_reassembly_missing(r, below, nack.missing))
 		send_nack(n, &nack, now_ns);
+}
+
+/*
+ * The part of the DELTA that is known to be missing, and how long after the last
+ * that was heard of it is asked for again: gaps when repairs usually have come, the
+ * end, which may be on its way, only when the whole usually has.
+ */
+static unsigned missing_below(const struct fdp_node *n, int64_t *out_wait_ns)
+{
+	uint8_t missing[FDP_BITMAP_BYTES];
+	const struct fdp_reassembly *r = &n->delta;
+	const bool gaps = fdp_reassembly_missing(r, r->reported, missing) > 0;
+
+	*out_wait_ns = gaps ? fdp_trip_wait(&n->repair, n->wait_ns) : n->wait_ns;
+	return gaps && *out_wait_ns < n->wait_ns ? r->reported : r->count;
 }
 
 /* The same snapshot again: our ACK was lost, or we could not use it the first time. */
@@ -210,10 +230,22 @@ static void snapshot_again(struct fdp_node *n, const struct fdp_header *h, int64
 		fdp_reassembly_reset(&n->snapshot); /* take it when it comes once more */
 }
 
+/* A fragment of a DELTA that was asked for has come: how long that took. */
+static void note_repair(struct fdp_node *n, const struct fdp_header *h,
+			enum fdp_fragment_result result, int64_t now_ns)
+{
+	if (h->kind != FDP_DELTA || !h->again || !n->gap_ns ||
+	    (result != FDP_FRAGMENT_PART && result != FDP_FRAGMENT_WHOLE))
+		return;
+	fdp_trip_take(&n->repair, now_ns - n->gap_ns);
+	n->gap_ns = 0;
+}
+
 enum fdp_verdict fdp_node_on_state(struct fdp_node *n, const struct fdp_header *h,
 				   const uint8_t *payload, int64_t now_ns)
 {
 	struct fdp_reassembly *r = h->kind == FDP_SNAPSHOT ? &n->snapshot : &n->delta;
+	enum fdp_fragment_result result;
 
 	/* A delta is of no use before the snapshot, and asking for its rest even less. */
 	if (n->status == FDP_NODE_WAITING_SNAPSHOT && h->kind == FDP_DELTA)
@@ -221,7 +253,11 @@ enum fdp_verdict fdp_node_on_state(struct fdp_node *n, const struct fdp_header *
 	/* What is still to come of the message before will not come now. */
 	if (h->kind == FDP_DELTA && h->message > r->message)
 		n->lost += fdp_reassembly_lost(r);
-	switch (fdp_reassembly_add(r, h, payload)) {
+	if (h->message > r->message)
+		n->gap_ns = 0;
+	result = fdp_reassembly_add(r, h, payload);
+	note_repair(n, h, result, now_ns);
+	switch (result) {
 	case FDP_FRAGMENT_BAD:
 		return FDP_BAD_FORMAT;
 	case FDP_FRAGMENT_AGAIN:
@@ -250,7 +286,7 @@ static void ask_for_announced(struct fdp_node *n, const struct fdp_announce *a, 
 		return;
 	if (a->message == n->delta.message) {
 		if (fdp_reassembly_open(&n->delta))
-			nack_missing(n, &n->delta, now_ns);
+			nack_missing(n, &n->delta, n->delta.count, now_ns);
 		else
 			ask_for_snapshot(n, a->frame, now_ns); /* came whole, was of no use */
 		return;
@@ -313,8 +349,13 @@ void fdp_node_frame_tick(struct fdp_node *n, int64_t now_ns)
 		n->current.asks++;
 		send_ready(n, now_ns);
 	}
-	if (fdp_reassembly_open(&n->delta) && now_ns - n->nacked_ns >= n->wait_ns)
-		nack_missing(n, &n->delta, now_ns);
+	if (fdp_reassembly_open(&n->delta)) {
+		int64_t wait_ns;
+		const unsigned below = missing_below(n, &wait_ns);
+
+		if (now_ns - n->nacked_ns >= wait_ns)
+			nack_missing(n, &n->delta, below, now_ns);
+	}
 	fdp_node_share_tick(n, now_ns);
 }
 
@@ -324,8 +365,13 @@ int64_t fdp_node_frame_next(const struct fdp_node *n)
 
 	if (n->current.ready && !n->current.swapped)
 		next = ready_at(n);
-	if (fdp_reassembly_open(&n->delta) && n->nacked_ns + n->wait_ns < next)
-		next = n->nacked_ns + n->wait_ns;
+	if (fdp_reassembly_open(&n->delta)) {
+		int64_t wait_ns;
+
+		missing_below(n, &wait_ns);
+		if (n->nacked_ns + wait_ns < next)
+			next = n->nacked_ns + wait_ns;
+	}
 	share_next = fdp_node_share_next(n);
 	return share_next < next ? share_next : next;
 }

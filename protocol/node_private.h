@@ -12,6 +12,7 @@
 #include "protocol/session_keys.h"
 #include "protocol/share.h"
 #include "protocol/state.h"
+#include "protocol/trip.h"
 
 #define FDP_JOIN_DEFAULT_NS INT64_C(200000000)
 #define FDP_SILENCE_DEFAULT_NS INT64_C(2000000000)
@@ -72,7 +73,9 @@ struct fdp_node {
 
 	/* One each for DELTA and SNAPSHOT. */
 	struct fdp_reassembly delta, snapshot;
-	int64_t nacked_ns;
+	int64_t nacked_ns;      /* last asked for fragments, or one came */
+	int64_t gap_ns;         /* first asked for those of the present DELTA; 0: not, or one came */
+	struct fdp_trip repair; /* from asking for a fragment to having it */
 	uint8_t plain[FDP_MESSAGE_MAX];
 
 	struct fdp_share share;

@@ -475,11 +475,11 @@ static void for_one_node_alone(void **state)
 	sim_assemble(&s);
 	s.tamper = divert;
 	s.tamper_ctx = &diverted;
-	sim_run_frames(&s, 20);
+	sim_run_frames(&s, 40);
 	fdp_node_counters(s.nodes[1].node, &c);
 	assert_true(diverted >= 40);
 	assert_int_equal(c.bad_replay, diverted);
-	assert_int_equal(s.nodes[1].swaps, 20);
+	assert_int_equal(s.nodes[1].swaps, 40);
 	assert_int_equal(s.late, 0);
 	sim_finish(&s);
 }

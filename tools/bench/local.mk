@@ -46,3 +46,28 @@ tools_bench_barrier_SOURCES = \
 	tools/bench/barrier_net.c
 tools_bench_barrier_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) -pthread
 tools_bench_barrier_LDADD = daemon/libgdaemon.a $(PROTOCOL_LIBS) -lpthread
+
+# From the master to the last node, for updates of 200 B, 4 KB and 64 KB: the protocol
+# with a parameter more, so it is built for these programs alone.
+# `make bench-delivery`; scripts/results runs them.
+EXTRA_PROGRAMS = tools/bench-delivery-200 tools/bench-delivery-4k tools/bench-delivery-64k
+bench-delivery: $(EXTRA_PROGRAMS)
+CLEANFILES += $(EXTRA_PROGRAMS)
+DELIVERY_SOURCES = \
+	tools/bench/barrier.h tools/bench/barrier_net.c \
+	tools/bench/delivery.c tools/bench/delivery.h \
+	tools/bench/delivery_ends.c \
+	$(protocol_libgprotocol_a_SOURCES)
+DELIVERY_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS) -pthread
+DELIVERY_LIBS = daemon/libgdaemon.a $(BASE_LIBS) $(LZO_LIBS) -lpthread
+tools_bench_delivery_200_SOURCES = $(DELIVERY_SOURCES)
+tools_bench_delivery_200_CFLAGS = $(DELIVERY_CFLAGS)
+tools_bench_delivery_200_LDADD = $(DELIVERY_LIBS)
+tools_bench_delivery_4k_SOURCES = $(DELIVERY_SOURCES)
+tools_bench_delivery_4k_CPPFLAGS = $(AM_CPPFLAGS) -DPARAM_BALLAST=970
+tools_bench_delivery_4k_CFLAGS = $(DELIVERY_CFLAGS)
+tools_bench_delivery_4k_LDADD = $(DELIVERY_LIBS)
+tools_bench_delivery_64k_SOURCES = $(DELIVERY_SOURCES)
+tools_bench_delivery_64k_CPPFLAGS = $(AM_CPPFLAGS) -DPARAM_BALLAST=16000
+tools_bench_delivery_64k_CFLAGS = $(DELIVERY_CFLAGS)
+tools_bench_delivery_64k_LDADD = $(DELIVERY_LIBS)
