@@ -1,6 +1,7 @@
 noinst_LIBRARIES += protocol/libgprotocol.a
 protocol_libgprotocol_a_SOURCES = \
 	protocol/barrier.h \
+	protocol/bucket.h \
 	protocol/clock_offset.c protocol/clock_offset.h \
 	protocol/delta.c \
 	protocol/fragment.c protocol/fragment.h \

@@ -96,6 +96,8 @@ int fdp_master_create(struct fdp_master **out, const struct fdp_master_params *p
 		m->params.probe_ns = default_probe(params->deadline_ns);
 	m->ops = *ops;
 	m->answers = -1;
+	m->bulk_node = (struct fdp_rate){ FDP_BULK_NODE_BYTES_S, FDP_BULK_NODE_BURST };
+	m->bulk_all = (struct fdp_rate){ FDP_BULK_ALL_BYTES_S, FDP_BULK_ALL_BURST };
 	m->group = params->multicast && !params->probe_group;
 	randombytes_buf(m->nonce, sizeof m->nonce);
 	fdp_key_to_nodes(m->params.key, params->session, m->nonce, m->key_to_nodes);

@@ -8,6 +8,7 @@
 #define GROTTO_PROTOCOL_MASTER_PRIVATE_H
 
 #include "protocol/barrier.h"
+#include "protocol/bucket.h"
 #include "protocol/master.h"
 #include "protocol/message.h"
 #include "protocol/outbox.h"
@@ -33,6 +34,18 @@
 #define FDP_SWAPPED_MOST_NS INT64_C(10000000000) /* a swap is told of within this */
 #define FDP_ECHOES_FIRST 64 /* to a node that has just joined, as fast as there is room */
 #define FDP_ECHOES_FEW 4 /* up to so many nodes two echoes a SWAP are enough */
+/*
+ * Snapshots and what is sent again of the light: so fast to one node, and to all
+ * together. With a frame's longest delta (64 KiB) a node's burst fits the receive
+ * buffer that Linux gives unasked (208 KiB, which counts each datagram's room), and a delta
+ * waits for the burst to all at most: a millisecond at 1 Gbit/s.
+ */
+#define FDP_BULK_NODE_BYTES_S 40000000
+#define FDP_BULK_NODE_BURST 65536
+#define FDP_BULK_ALL_BYTES_S 60000000
+#define FDP_BULK_ALL_BURST 131072
+_Static_assert(FDP_BULK_NODE_BURST >= FDP_DATAGRAM_MAX, "a bucket must hold what is sent at once");
+
 #define FDP_PATHS 64 /* ways of a SWAP that its lead is measured by */
 
 struct fdp_peer {
@@ -47,6 +60,7 @@ struct fdp_peer {
 	uint64_t mismatch_frame; /* counted once a frame */
 	unsigned missed_row;
 	int64_t joined_ns;
+	struct fdp_bucket bulk;
 	uint32_t lost;        /* as its last report said, see fdp_report */
 	struct fdp_trip trip; /* from a DELTA to its ACK */
 	int64_t snapshot_ns; /* last sent */
@@ -90,6 +104,8 @@ struct fdp_master {
 	uint64_t snapshot_present; /* whom the snapshot names as present */
 	int64_t repaired_ns[FDP_FRAGMENTS_MAX]; /* of delta, when sent to all again */
 	uint64_t repair_budget;                 /* bytes left in this frame */
+	struct fdp_rate bulk_node, bulk_all;
+	struct fdp_bucket bulk; /* to all together */
 	unsigned loss; /* frames for which small messages still go twice */
 	int64_t asked_ns; /* who has not acknowledged the frame was last asked, or the frame began */
 	int64_t keepalive_at;
@@ -126,6 +142,8 @@ bool fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
 			const struct fdp_join *join, int64_t now_ns);
 void fdp_master_on_leave(struct fdp_master *m, unsigned node, int64_t now_ns);
 
+/* Whether so much may be sent to the node now besides the frame; counts it if so. */
+bool fdp_master_bulk(struct fdp_master *m, unsigned node, size_t bytes);
 void fdp_master_send_snapshot(struct fdp_master *m, unsigned node, int64_t now_ns);
 /* What the node holds is wrong or useless: nothing that it acknowledged is a base. */
 void fdp_master_want_snapshot(struct fdp_master *m, unsigned node);

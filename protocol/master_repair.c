@@ -47,6 +47,19 @@ void fdp_master_want_snapshot(struct fdp_master *m, unsigned node)
 	peer->snapshot_from = m->frame;
 }
 
+bool fdp_master_bulk(struct fdp_master *m, unsigned node, size_t bytes)
+{
+	struct fdp_bucket *one = &m->peers[node].bulk;
+
+	fdp_bucket_fill(one, &m->bulk_node, m->now_ns);
+	fdp_bucket_fill(&m->bulk, &m->bulk_all, m->now_ns);
+	if (one->left < bytes || m->bulk.left < bytes)
+		return false;
+	one->left -= bytes;
+	m->bulk.left -= bytes;
+	return true;
+}
+
 void fdp_master_send_snapshot(struct fdp_master *m, unsigned node, int64_t now_ns)
 {
 	const uint64_t present = fdp_master_mask(m, fdp_peer_present);
@@ -57,7 +70,9 @@ void fdp_master_send_snapshot(struct fdp_master *m, unsigned node, int64_t now_n
 		fdp_master_write_state(m, &m->snapshot, FDP_SNAPSHOT, 0);
 	m->snapshot_present = present;
 	m->peers[node].snapshot_ns = now_ns;
-	fdp_outbox_post(&m->out, (int)node, &m->snapshot);
+	/* If not now, then when it is due again. */
+	if (fdp_master_bulk(m, node, m->snapshot.len))
+		fdp_outbox_post(&m->out, (int)node, &m->snapshot);
 }
 
 static bool spend(struct fdp_master *m, const struct fdp_letter *letter, unsigned index)

@@ -163,7 +163,8 @@ enum fdp_verdict fdp_master_on_lack(struct fdp_master *m, unsigned node, const u
 		piece_len =
 			fdp_share_write(&m->share, lack.index, slice, i, fdp_outbox_body(&m->out),
 					m->out.datagram_max - FDP_HEADER_BYTES);
-		if (!piece_len || m->lack_budget[node] < piece_len)
+		/* What is left out is asked for again. */
+		if (!piece_len || m->lack_budget[node] < piece_len || !fdp_master_bulk(m, node, piece_len))
 			break;
 		m->lack_budget[node] -= piece_len;
 		m->share.counts.repairs++;

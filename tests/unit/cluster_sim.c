@@ -86,7 +86,8 @@ void sim_inject(struct sim *s, int to, const uint8_t *bytes, size_t len, int64_t
 }
 
 /* One receiver's copy of a datagram: lost, late, twice, as the dice fall. */
-static void carry(struct sim *s, int to, int about, const uint8_t *bytes, size_t len)
+static void carry(struct sim *s, int to, int about, const uint8_t *bytes, size_t len,
+		  int64_t queued_ns)
 {
 	const int copies = 1 + (s->duplicate > 0 && uniform(s) < s->duplicate);
 
@@ -103,10 +104,18 @@ static void carry(struct sim *s, int to, int about, const uint8_t *bytes, size_t
 			continue;
 		}
 		heap_push(s, (struct sim_packet){
-			s->now_ns + s->delay_ns + (to < 0 ? 0 : s->slow_ns) +
+			s->now_ns + queued_ns + s->delay_ns + (to < 0 ? 0 : s->slow_ns) +
 				(int64_t)((double)s->jitter_ns * uniform(s)),
 			s->order++, to, len, copy });
 	}
+}
+
+/* Datagrams leave the master one after the other, each with its frame's 66 bytes. */
+static void queue_on_link(struct sim *s, size_t len)
+{
+	if (s->link_free_ns < s->now_ns)
+		s->link_free_ns = s->now_ns;
+	s->link_free_ns += (int64_t)(len + 66) * s->byte_ns;
 }
 
 static void master_send(void *ctx, int to, const uint8_t *bytes, size_t len)
@@ -116,9 +125,15 @@ static void master_send(void *ctx, int to, const uint8_t *bytes, size_t len)
 	assert_true(len <= s->datagram_max);
 	assert_true(to != FDP_TO_GROUP || s->multicast);
 	s->to_group += to == FDP_TO_GROUP;
-	for (int i = 0; i < (int)s->node_count; i++)
-		if (to == FDP_TO_ALL || to == i || (to == FDP_TO_GROUP && !s->nodes[i].deaf))
-			carry(s, i, i, bytes, len);
+	if (to == FDP_TO_GROUP)
+		queue_on_link(s, len);
+	for (int i = 0; i < (int)s->node_count; i++) {
+		if (to != FDP_TO_ALL && to != i && (to != FDP_TO_GROUP || s->nodes[i].deaf))
+			continue;
+		if (to != FDP_TO_GROUP)
+			queue_on_link(s, len);
+		carry(s, i, i, bytes, len, s->byte_ns ? s->link_free_ns - s->now_ns : 0);
+	}
 }
 
 static void master_event(void *ctx, const struct fdp_master_event *e)
@@ -160,7 +175,7 @@ static void node_send(void *ctx, const uint8_t *bytes, size_t len)
 	struct sim_node *n = ctx;
 
 	assert_true(len <= n->sim->datagram_max);
-	carry(n->sim, -1, n->index, bytes, len);
+	carry(n->sim, -1, n->index, bytes, len, 0);
 }
 
 static void note_shown(struct sim *s, uint64_t frame)

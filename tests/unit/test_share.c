@@ -356,6 +356,60 @@ static void the_last_is_not_lost(void **state)
 	run_deaf(-1); /* on the way to the master */
 }
 
+/*
+ * A node that has nothing of a light of 4 MiB asks for it beside the frames, on a
+ * link of 1 Gbit/s: no frame's delta waits for more than a burst of it, and no wall is
+ * late. Sent as fast as it is asked for it would stop the room.
+ */
+static uint64_t run_bulk(bool paced)
+{
+	struct deaf deaf = { .to = 1, .kind = FDP_SLICE };
+	struct room room;
+	struct sim *s = &room.sim;
+	double worst;
+	int64_t begun_ns;
+	uint64_t late;
+
+	room_init(&room, 4, FDP_SHARE_MAX, 17);
+	room.still_after = 2;
+	s->multicast = false;
+	sim_start_all(s);
+	sim_assemble(s);
+	if (!paced)
+		s->master->bulk_node = s->master->bulk_all = (struct fdp_rate){ UINT32_MAX, UINT32_MAX };
+	s->tamper = deaf_to_slices;
+	s->tamper_ctx = &deaf;
+	sim_run_frames(s, 12);
+	s->byte_ns = 8;
+	s->delivery_count = 0;
+	s->tamper = NULL;
+	begun_ns = s->now_ns;
+	for (int frames = 0; room.lights[1].now[0] != room.made[0] || room.lights[1].now[2] != room.made[2] ||
+			     room.lights[1].now[3] != room.made[3]; frames++) {
+		assert_true(frames < 300);
+		sim_run_frames(s, 1);
+	}
+	worst = (double)sim_delivery_quantile(s, 1) * 1e-6;
+	late = s->late;
+	printf("# 3 MiB of light to one of 4 nodes beside the frames, 1 Gbit/s, %s: whole in %.0f ms, deltas under way "
+	       "for at most %.2f ms, %llu barriers missed\n", paced ? "paced" : "all at once",
+	       (double)(s->now_ns - begun_ns) * 1e-6, worst, (unsigned long long)late);
+	if (paced) {
+		assert_true(worst < 1.2); /* FDP_BULK_ALL_BURST takes 1.05 */
+		assert_true(s->now_ns - begun_ns < 1000 * SIM_MS);
+	}
+	assert_same_light(&room);
+	sim_finish(s);
+	return late;
+}
+
+static void bulk_is_paced(void **state)
+{
+	(void)state;
+	assert_true(run_bulk(false) > 0);
+	assert_int_equal(run_bulk(true), 0);
+}
+
 /* A key holder lies: nothing of it reaches another node's light, nobody is disturbed. */
 static uint16_t say_slice(struct room *room, struct fdp_piece piece, size_t len, int node)
 {
@@ -574,7 +628,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(bodies),	  cmocka_unit_test(weather),
 		cmocka_unit_test(still_room),	  cmocka_unit_test(dies_and_returns),
-		cmocka_unit_test(the_last_is_not_lost), cmocka_unit_test(hostile),
+		cmocka_unit_test(the_last_is_not_lost), cmocka_unit_test(bulk_is_paced), cmocka_unit_test(hostile),
 		cmocka_unit_test(not_shared),	  cmocka_unit_test(storm),
 	};
 
