@@ -93,7 +93,8 @@ static void repair(struct fdp_master *m, unsigned node, const struct fdp_letter 
 	bool all = letter == &m->delta && m->group;
 
 	if (all && m->repaired_ns[index] != INT64_MIN) {
-		if (now_ns - m->repaired_ns[index] < fdp_master_wait(m, m->barrier.live) / 2)
+		/* No node asks a second time before: this is another one. */
+		if (now_ns - m->repaired_ns[index] < FDP_WAIT_LEAST_NS)
 			return;
 		all = false; /* perhaps this node does not hear the group at all */
 	}

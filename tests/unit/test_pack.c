@@ -3,7 +3,12 @@
 
 #include "protocol/outbox.h"
 
+#include "protocol/params.h"
+
+#include "base/clock.h"
 #include "base/result.h"
+
+#include <math.h>
 
 static void fill(struct unit_random *r, uint8_t *bytes, size_t len, unsigned kinds)
 {
@@ -133,11 +138,85 @@ static void when_it_pays(void **state)
 	fdp_outbox_finish(&out);
 }
 
+/* A visitor who walks a circle and looks about; four lamps of 16 that swing. */
+static void walk(struct param_state *state, uint64_t frame, bool lamps)
+{
+	const double t = (double)frame / 60;
+	const float head[3] = { (float)sin(t * 0.7), 1.7f + 0.02f * (float)sin(t * 6), (float)cos(t * 0.7) };
+	const float look[4] = { 0, (float)sin(t * 0.35), 0, (float)cos(t * 0.35) };
+	const float wand[3] = { head[0] + 0.3f, 1.2f, head[2] - 0.2f };
+	const uint64_t ns = frame * 16666667;
+	float at[48] = { 0 };
+
+	for (int i = 0; i < 12; i++)
+		at[i] = (float)sin(t + i) * 2;
+	assert_true(param_set(state, PARAM_FRAME_TIME, &ns, frame) >= 0);
+	assert_true(param_set(state, PARAM_HEAD_POSITION, head, frame) >= 0);
+	assert_true(param_set(state, PARAM_HEAD_ROTATION, look, frame) >= 0);
+	assert_true(param_set(state, PARAM_WAND_POSITION, wand, frame) >= 0);
+	assert_true(param_set(state, PARAM_WAND_ROTATION, look, frame) >= 0);
+	if (lamps)
+		assert_true(param_set(state, PARAM_LAMP_POSITION, at, frame) >= 0);
+}
+
+/*
+ * The states that there are, as they go: what LZO makes of them, alone and after XOR
+ * with the one before, and what it takes.
+ */
+static void states(void **state)
+{
+	static const struct { const char *name; bool lamps, whole; } cases[] = {
+		{ "delta, head and wand", false, false }, { "delta, lamps too", true, false },
+		{ "snapshot, lamps too", true, true },
+	};
+	static uint8_t now[FDP_MESSAGE_MAX], last[FDP_MESSAGE_MAX], differs[FDP_MESSAGE_MAX];
+	struct fdp_packer *packer;
+
+	(void)state;
+	assert_int_equal(fdp_packer_create(&packer), GR_OK);
+	for (size_t k = 0; k < 3; k++) {
+		struct param_state *params;
+		size_t plain = 0, alone = 0, after = 0;
+		int64_t took_ns = 0;
+
+		assert_int_equal(param_state_create(&params), GR_OK);
+		for (uint64_t frame = 1; frame <= 600; frame++) {
+			const uint8_t *bytes;
+			size_t packed;
+			int64_t from_ns;
+			long len;
+
+			walk(params, frame, cases[k].lamps);
+			len = param_delta_encode(params, cases[k].whole ? 0 : frame - 1, now, sizeof now);
+			assert_true(len > 0);
+			for (long i = 0; i < len; i++)
+				differs[i] = now[i] ^ last[i];
+			memcpy(last, now, (size_t)len);
+			plain += (size_t)len;
+			from_ns = gr_clock_now(&gr_clock_monotonic);
+			packed = (size_t)len;
+			fdp_pack(packer, now, (size_t)len, &bytes, &packed);
+			took_ns += gr_clock_now(&gr_clock_monotonic) - from_ns;
+			alone += packed;
+			packed = (size_t)len;
+			fdp_pack(packer, differs, (size_t)len, &bytes, &packed);
+			after += packed;
+			/* One datagram either way, so packing it saves nothing: it is not tried. */
+			assert_true((size_t)len <= 1472 - FDP_HEADER_BYTES);
+		}
+		printf("# %s: %.0f bytes; LZO %.2f, after XOR %.2f of them; %.1f us\n", cases[k].name,
+		       (double)plain / 600, (double)alone / (double)plain, (double)after / (double)plain,
+		       (double)took_ns * 1e-3 / 600);
+		param_state_destroy(&params);
+	}
+	fdp_packer_destroy(&packer);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(round_trips), cmocka_unit_test(hostile),
-		cmocka_unit_test(when_it_pays),
+		cmocka_unit_test(when_it_pays), cmocka_unit_test(states),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
