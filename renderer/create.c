@@ -2,13 +2,12 @@
 
 #include "base/plain.h"
 #include "base/result.h"
-#include "renderer/calibrate.h"
 #include "renderer/gi/choose.h"
 #include "renderer/gi/surfel_store.h"
 #include "renderer/gi/surfels.h"
 #include "renderer/scene/environment.h"
 
-#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 static int check_params(const struct renderer_params *params, const struct target *target)
@@ -33,44 +32,41 @@ static int check_params(const struct renderer_params *params, const struct targe
 static void plan_light(struct renderer *r)
 {
 	const struct scene_file *file = r->file;
-	const char *from = "no costs needed";
 
 	r->file_steps = file->gi.steps;
-	gi_facts_take(&r->facts, r->scene, file);
-	if (file->gi.method != SCENE_GI_AUTO)
+	if (file->gi.method != SCENE_GI_AUTO) {
+		gi_facts_take(&r->light.facts, r->scene, file);
 		return;
-	r->costs = gi_costs_usual;
-	if (gi_plan_needs_costs(&r->facts)) {
-		calibrate_kept(&r->costs, r->target, &from);
-		if (r->facts.scattering_per_m <= 0 && gi_facts_count(&r->facts, r->scene) != GR_OK)
-			gr_notice("surfels could not be counted before they are baked: planned by the scene's area alone");
 	}
-	gi_plan_make(&r->plan, &r->facts, &file->gi, &r->costs);
+	light_plan_make(&r->light, r->target, r->scene, file);
 	r->planned = *file;
-	r->planned.gi = r->plan.gi;
+	r->planned.gi = r->light.plan.gi;
 	r->file = &r->planned;
 	r->is_planned = true;
-	gr_log(r->plan.within ? GR_LOG_NOTICE : GR_LOG_WARNING, "light, chosen for %s ms by %s: %s",
-	       gr_plain((double)file->gi.budget_ms, 3).text, from, r->plan.why);
+	gr_log(r->light.plan.within ? GR_LOG_NOTICE : GR_LOG_WARNING, "light, chosen for %s ms by %s: %s",
+	       gr_plain((double)file->gi.budget_ms, 3).text, r->light.costs_from, r->light.plan.why);
 }
 
 /* A plan by what was baked, and what would be right where it exceeds the budget. */
 static void settle_plan(struct renderer *r)
 {
-	struct gi_plan right;
-	char settings[160];
+	struct gi_plan *plan = &r->light.plan, right;
+	char settings[GI_PLAN_TEXT], advice[GI_PLAN_TEXT + 96];
 
-	if (gi_plan_baked(&r->plan, &r->facts, &r->costs, r->surfels, &right)) {
+	if (gi_plan_baked(plan, &r->light.facts, &r->light.costs, r->surfels, &right)) {
 		gr_info("light, with %zu surfels as baked: %s ms a frame while it changes", r->surfels,
-			gr_plain(r->plan.update_ms, 3).text);
+			gr_plain(plan->update_ms, 3).text);
 		return;
 	}
 	gi_plan_settings(settings, sizeof settings, &right.gi);
-	gr_warning("light: %zu surfels take %s ms, more than the budget of %s ms; gi.budget_ms = %s "
-		   "would be right, or %s, named in the scene file",
-		   r->surfels, gr_plain(r->plan.update_ms, 3).text,
-		   gr_plain((double)r->plan.gi.budget_ms, 3).text,
-		   gr_plain(ceil(r->plan.update_ms), 3).text, settings);
+	if (right.within)
+		snprintf(advice, sizeof advice, "gi.budget_ms = %s would be right, or %s, named in the scene file",
+			 gr_plain(gi_plan_budget_for(plan->update_ms), 3).text, settings);
+	else
+		snprintf(advice, sizeof advice, "nothing fits that, and gi.budget_ms = %s is the least that does",
+			 gr_plain(gi_plan_budget_for(right.update_ms), 3).text);
+	gr_warning("light: %zu surfels take %s ms, more than the budget of %s ms; %s", r->surfels,
+		   gr_plain(plan->update_ms, 3).text, gr_plain((double)plan->gi.budget_ms, 3).text, advice);
 }
 
 /* What surfels and probes need of the scene, once, and then on the GPU. */
@@ -171,12 +167,12 @@ static void log_environment(const struct renderer *r)
 			   method == SCENE_GI_NONE ? "none" : "lpv");
 }
 
-/* Baked light is thinned by the air of the scene file, and never scattered. */
+/* Baked light is thinned by the air of the scene file, and never scattered. A plan says so itself. */
 static void log_medium(const struct renderer *r)
 {
-	if (r->choice.method != SCENE_GI_SURFELS && r->choice.method != SCENE_GI_PROBES)
+	if (r->is_planned || (r->choice.method != SCENE_GI_SURFELS && r->choice.method != SCENE_GI_PROBES))
 		return;
-	if (r->facts.scattering_per_m > 0)
+	if (r->light.facts.scattering_per_m > 0)
 		gr_warning("the air scatters, which surfels and probes do not carry; gi.method = \"lpv\" does");
 }
 

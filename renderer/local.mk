@@ -2,7 +2,7 @@
 # its sources to RENDERER_SOURCES and its GLSL files to SHADERS.
 RENDERER_SOURCES = \
 	renderer/calibrate.c renderer/calibrate.h renderer/calibrate_room.c renderer/calibrate_room.h \
-	renderer/create.c renderer/frame.c renderer/frame.h renderer/irradiance.c renderer/read.c \
+	renderer/create.c renderer/frame.c renderer/frame.h renderer/irradiance.c renderer/plan_light.c renderer/plan_light.h renderer/read.c \
 	renderer/renderer.c renderer/renderer.h renderer/renderer_private.h \
 	renderer/share.c
 

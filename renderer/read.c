@@ -73,7 +73,7 @@ int renderer_read_indirect(struct renderer *renderer, int eye, struct image *out
 
 const struct gi_plan *renderer_plan(const struct renderer *renderer)
 {
-	return renderer->is_planned ? &renderer->plan : NULL;
+	return renderer->is_planned ? &renderer->light.plan : NULL;
 }
 
 size_t renderer_surfels(const struct renderer *renderer)

@@ -76,7 +76,7 @@ static int update_method(struct renderer *r, const struct render_frame *frame,
 	if (!r->is_planned || frame->gi_steps != r->file_steps)
 		return r->gi->ops->update(r->gi, frame, light);
 	planned = *frame;
-	planned.gi_steps = r->plan.gi.steps;
+	planned.gi_steps = r->light.plan.gi.steps;
 	return r->gi->ops->update(r->gi, &planned, light);
 }
 

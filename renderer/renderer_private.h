@@ -5,8 +5,8 @@
 #include "base/log.h"
 #include "renderer/gi/choose.h"
 #include "renderer/gi/gi.h"
-#include "renderer/gi/plan.h"
 #include "renderer/gl/program.h"
+#include "renderer/plan_light.h"
 #include "renderer/renderer.h"
 #include "renderer/tone/tone.h"
 #include "renderer/view/backdrop.h"
@@ -35,9 +35,7 @@ struct renderer {
 	const struct scene *scene;
 	struct renderer_params params;
 	bool is_planned;             /* gi.method = "auto" */
-	struct gi_plan plan;
-	struct gi_facts facts; /* that it was made from */
-	struct gi_costs costs;
+	struct light_plan light;     /* of it; else the facts alone */
 	size_t surfels;              /* 0: none */
 	struct scene_file planned;   /* the file with the plan's gi; all else borrowed */
 	int file_steps;              /* propagation steps that the file says */

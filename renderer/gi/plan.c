@@ -25,7 +25,7 @@ static const double surfel_counts[] = { 250, 500, 1000, 2000, 4000, 8000, 16000,
 static const int link_counts[] = { 64, 128, 256, 512, 1024 };
 static const int gather_counts[] = { 1, 2, 4 };
 static const int probe_counts[] = { 4, 8, 12, 16, 24, 32 };
-static const int lattices[] = { 8, 12, 16, 20, 24, 32, 48, 64 };
+static const int lattice_counts[] = { 8, 12, 16, 20, 24, 32, 48, 64 };
 static const int step_counts[] = { 2, 4, 8, 16 };
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
@@ -111,7 +111,7 @@ struct search {
 	const struct gi_costs *costs;
 	double budget_ms;
 	struct scene_gi best;
-	double cost, error;
+	double cost, error; /* of best; the error is the part that settings change */
 	bool any, within;
 };
 
@@ -134,10 +134,11 @@ static bool better(const struct search *s, double cost, double error, bool withi
 
 static void consider(struct search *s, const struct scene_gi *gi)
 {
-	double cost = gi_plan_cost_ms(s->facts, gi, s->costs), error = gi_plan_error(s->facts, gi);
+	double cost = gi_plan_cost_ms(s->facts, gi, s->costs), error = gi_plan_error_settings(s->facts, gi);
 	bool within = cost <= s->budget_ms;
 
-	if (!isfinite(cost) || !isfinite(error) || !better(s, cost, error, within))
+	if (!isfinite(cost) || !isfinite(gi_plan_error(s->facts, gi)) ||
+	    !better(s, cost, error, within))
 		return;
 	s->best = *gi;
 	s->cost = cost;
@@ -151,9 +152,9 @@ static void consider_lattices(struct search *s, struct scene_gi gi)
 	gi.method = SCENE_GI_LPV;
 	gi.lpv_mode = SCENE_LPV_REPAIRED;
 	gi.share = SCENE_SHARE_LOCAL; /* a lattice is not shared out */
-	for (size_t i = 0; i < COUNT(lattices); i++) {
+	for (size_t i = 0; i < COUNT(lattice_counts); i++) {
 		for (size_t k = 0; k < COUNT(step_counts); k++) {
-			gi.lattice = lattices[i];
+			gi.lattice = lattice_counts[i];
 			gi.steps = step_counts[k];
 			consider(s, &gi);
 		}
@@ -201,6 +202,33 @@ static void consider_surfels(struct search *s, struct scene_gi gi, bool probes)
 	}
 }
 
+/* The lattice knows neither an environment nor what moves: with these it is for air alone. */
+static bool lattices_serve(const struct gi_facts *facts, const struct scene_gi *wanted)
+{
+	if (facts->scattering_per_m > 0)
+		return true;
+	return !facts->environment && !facts->moving_geometry && wanted->share == SCENE_SHARE_LOCAL;
+}
+
+/*
+ * Two methods, each with its best settings, by all that they err. No leeway
+ * here: with it a larger budget could give a larger error.
+ */
+static const struct search *better_of(const struct search *a, const struct search *b)
+{
+	double error[2];
+
+	if (!a->any || !b->any)
+		return a->any ? a : b;
+	if (a->within != b->within)
+		return a->within ? a : b;
+	error[0] = gi_plan_error(a->facts, &a->best);
+	error[1] = gi_plan_error(b->facts, &b->best);
+	if (!a->within || !(error[0] < error[1] || error[0] > error[1]))
+		return a->cost <= b->cost ? a : b;
+	return error[0] < error[1] ? a : b;
+}
+
 bool gi_plan_has_light(const struct gi_facts *facts)
 {
 	return facts->lamps_fixed + facts->lamps_moving > 0 || facts->emissive_triangles > 0 ||
@@ -224,28 +252,34 @@ static void complete(struct gi_plan *plan, const struct gi_facts *facts)
 	gi_plan_say(plan, facts);
 }
 
+double gi_plan_budget_for(double ms)
+{
+	double power = pow(10, floor(log10(ms)) - 1);
+
+	/* a scene file's budget is a float: not below by its rounding */
+	return fmax(GI_PLAN_BUDGET_LEAST, ceil(ms / power * (1 + 1e-6)) * power);
+}
+
 void gi_plan_make(struct gi_plan *out, const struct gi_facts *facts, const struct scene_gi *wanted,
 		  const struct gi_costs *costs)
 {
-	struct search s = { .facts = facts, .costs = costs };
-
 	/* a NaN fits nothing */
-	s.budget_ms = wanted->budget_ms > 0 ? (double)wanted->budget_ms : 0;
-	if (!gi_costs_valid(costs))
-		s.costs = &gi_costs_usual;
+	const double budget = wanted->budget_ms > 0 ? (double)wanted->budget_ms : 0;
+	struct search surfels = { .facts = facts, .budget_ms = budget,
+				  .costs = gi_costs_valid(costs) ? costs : &gi_costs_usual };
+	struct search lattices = surfels;
+	const struct search *s;
+
 	if (gi_plan_needs_costs(facts)) {
-		if (facts->scattering_per_m > 0) {
-			consider_lattices(&s, *wanted);
-		} else {
-			consider_surfels(&s, *wanted, facts->moving_geometry);
-			if (!facts->environment && !facts->moving_geometry &&
-			    wanted->share == SCENE_SHARE_LOCAL)
-				consider_lattices(&s, *wanted);
-		}
+		consider_surfels(&surfels, *wanted, facts->moving_geometry);
+		if (lattices_serve(facts, wanted))
+			consider_lattices(&lattices, *wanted);
 	}
-	*out = (struct gi_plan){ .gi = s.any ? s.best : *wanted, .update_ms = s.cost, .error = s.error,
-				 .within = s.within };
-	if (!s.any) {
+	s = better_of(&surfels, &lattices);
+	*out = (struct gi_plan){ .gi = s->any ? s->best : *wanted, .update_ms = s->cost, .within = s->within };
+	if (s->any) {
+		out->error = gi_plan_error(facts, &s->best);
+	} else {
 		out->gi.method = SCENE_GI_NONE;
 		out->within = true;
 		out->error = gi_plan_has_light(facts);

@@ -4,9 +4,10 @@
  * function: equal facts, wishes and costs give equal plans on every machine.
  *
  * Costs are measured on the GPU (calibrate.h), errors are fitted to the bench
- * (plan_error.c). What is chosen errs least of all that fits the budget;
- * of what errs alike (within GI_PLAN_ALIKE) the cheapest. So a larger budget
- * never gives a larger error.
+ * (plan_error.c). Of each method what is chosen errs least of all that fits the
+ * budget, of what errs alike (within GI_PLAN_ALIKE) the cheapest; of methods,
+ * which errs least with all that it leaves out. So a larger budget never gives a
+ * larger error.
  *
  * Thread safe.
  */
@@ -88,6 +89,10 @@ void gi_plan_make(struct gi_plan *out, const struct gi_facts *facts, const struc
  */
 bool gi_plan_baked(struct gi_plan *plan, const struct gi_facts *facts, const struct gi_costs *costs,
 		   size_t surfels, struct gi_plan *out_right);
+/* A scene file's least. */
+#define GI_PLAN_BUDGET_LEAST 0.1
+/* The budget to write for what costs so much (above 0): two digits, rounded up. Milliseconds. */
+double gi_plan_budget_for(double ms);
 /* Settings in words, as "surfels 0.2 m apart, 256 links, 1 gather, 16 taps". */
 void gi_plan_settings(char *text, size_t size, const struct scene_gi *gi);
 /* Whether there is anything to choose by cost. */

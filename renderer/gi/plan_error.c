@@ -30,6 +30,8 @@
 #define LATTICE_LAG 0.1 /* over the number of steps, a lamp moving */
 /* Mirrors, for what knows none: over their share of the area. */
 #define MIRROR_MISSED 2.7
+/* An environment, for what knows none, beside other light: how bright either is is not known. */
+#define ENVIRONMENT_SHARE 0.5
 
 static double square(double v)
 {
@@ -70,14 +72,49 @@ static double probe_error(const struct gi_facts *facts, const struct scene_gi *g
 
 static double lattice_error(const struct gi_facts *facts, const struct scene_gi *gi)
 {
-	double still = LATTICE_FLOOR + LATTICE_COARSE / gi->lattice;
-	double sum = square(still) + square(MIRROR_MISSED * facts->mirror_share);
+	double sum = square(LATTICE_FLOOR + LATTICE_COARSE / gi->lattice);
 
 	if (facts->lamps_moving > 0)
 		sum += square(LATTICE_LAG / gi->steps);
-	if (facts->environment)
-		sum += 1;
 	return sqrt(sum);
+}
+
+/* The mean chord of a convex room is 4 V / S (Cauchy); what stands in it shortens the way. */
+double gi_plan_scattered(const struct gi_facts *facts)
+{
+	double volume = facts->size_m[0] * facts->size_m[1] * facts->size_m[2];
+
+	if (!(facts->scattering_per_m > 0))
+		return 0;
+	return -expm1(-facts->scattering_per_m * 4 * volume / facts->area_m2);
+}
+
+double gi_plan_error_missing(const struct gi_facts *facts, enum scene_gi_method method)
+{
+	bool others = facts->lamps_fixed + facts->lamps_moving > 0 || facts->emissive_triangles > 0;
+	double environment = facts->environment ? (others ? ENVIRONMENT_SHARE : 1) : 0;
+
+	switch (method) {
+	case SCENE_GI_LPV: return sqrt(square(MIRROR_MISSED * facts->mirror_share) + square(environment));
+	case SCENE_GI_SURFELS:
+	case SCENE_GI_PROBES: return gi_plan_scattered(facts);
+	case SCENE_GI_NONE:
+	case SCENE_GI_AUTO: break;
+	}
+	/* all of the indirect light */
+	return 1;
+}
+
+double gi_plan_error_settings(const struct gi_facts *facts, const struct scene_gi *gi)
+{
+	switch (gi->method) {
+	case SCENE_GI_LPV: return lattice_error(facts, gi);
+	case SCENE_GI_SURFELS: return surfel_error(facts, gi);
+	case SCENE_GI_PROBES: return probe_error(facts, gi);
+	case SCENE_GI_NONE:
+	case SCENE_GI_AUTO: break;
+	}
+	return 0;
 }
 
 /* Between which factors the bench's cases lie about the fit. */
@@ -95,13 +132,6 @@ void gi_plan_spread(enum scene_gi_method method, double *out_under, double *out_
 
 double gi_plan_error(const struct gi_facts *facts, const struct scene_gi *gi)
 {
-	switch (gi->method) {
-	case SCENE_GI_LPV: return lattice_error(facts, gi);
-	case SCENE_GI_SURFELS: return surfel_error(facts, gi);
-	case SCENE_GI_PROBES: return probe_error(facts, gi);
-	case SCENE_GI_NONE:
-	case SCENE_GI_AUTO: break;
-	}
-	/* all of the indirect light is missing */
-	return 1;
+	return sqrt(square(gi_plan_error_settings(facts, gi)) +
+		    square(gi_plan_error_missing(facts, gi->method)));
 }

@@ -7,6 +7,15 @@
 /* Surfels on a surface: of surfel_bake.c, Poisson discs that leave no gap. */
 #define SURFEL_DENSITY 0.7
 
+/*
+ * gi_plan_error is the root of the sum of the squares of two parts: what settings
+ * change, and what a method leaves out whatever its settings. Settings are
+ * chosen by the first, or the second would make all of them alike.
+ */
+double gi_plan_error_settings(const struct gi_facts *facts, const struct scene_gi *gi);
+double gi_plan_error_missing(const struct gi_facts *facts, enum scene_gi_method method);
+/* Of the light that crosses the scene, the share that its air scatters on the way, 0..1. */
+double gi_plan_scattered(const struct gi_facts *facts);
 bool gi_plan_has_light(const struct gi_facts *facts);
 /* Metres; the baker's own where the settings name none. */
 double gi_plan_spacing(const struct gi_facts *facts, const struct scene_gi *gi);

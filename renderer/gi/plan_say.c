@@ -36,17 +36,23 @@ static void put_reason(char *text, size_t size, const struct gi_facts *facts, co
 	const char *still = facts->moving_geometry
 				    ? "things move, and only probes light what is not baked"
 				    : "nothing moves but lamps";
+	char scattered[32] = "";
+
+	if (facts->scattering_per_m > 0)
+		snprintf(scattered, sizeof scattered, "%s", gr_plain_percent(gi_plan_scattered(facts)).text);
 
 	if (plan->gi.method == SCENE_GI_NONE)
 		snprintf(text, size, "%s",
 			 gi_plan_has_light(facts) ? "no surface can be lit"
 						  : "no lamp, no emissive surface, no environment");
-	else if (facts->scattering_per_m > 0)
-		snprintf(text, size, "the air scatters, which only the lattice carries%s",
-			 facts->environment ? "; it leaves the environment out" : "");
+	else if (plan->gi.method == SCENE_GI_LPV && facts->scattering_per_m > 0)
+		snprintf(text, size, "the air scatters about %s of the light, which only the lattice carries%s",
+			 scattered, facts->environment ? "; it leaves the environment out" : "");
 	else
-		snprintf(text, size, "%s%s", still,
-			 facts->environment ? "; there is an environment, which the lattice does not know" : "");
+		snprintf(text, size, "%s%s%s%s%s", still,
+			 facts->environment ? "; there is an environment, which the lattice does not know" : "",
+			 facts->scattering_per_m > 0 ? "; the air scatters about " : "", scattered,
+			 facts->scattering_per_m > 0 ? " of the light, which is left out" : "");
 }
 
 static void put_error(char *text, size_t size, const struct gi_plan *plan)
@@ -57,7 +63,7 @@ static void put_error(char *text, size_t size, const struct gi_plan *plan)
 
 void gi_plan_say(struct gi_plan *plan, const struct gi_facts *facts)
 {
-	char settings[160], reason[200], error[112], count[48] = "", over[96] = "";
+	char settings[GI_PLAN_TEXT], reason[256], error[112], count[48] = "", over[144] = "";
 
 	gi_plan_settings(settings, sizeof settings, &plan->gi);
 	put_reason(reason, sizeof reason, facts, plan);
@@ -69,8 +75,9 @@ void gi_plan_say(struct gi_plan *plan, const struct gi_facts *facts)
 	if (plan->surfels > 0)
 		snprintf(count, sizeof count, "%s surfels, ", gr_plain(round(plan->surfels), 4).text);
 	if (!plan->within && !plan->baked)
-		snprintf(over, sizeof over, "; the budget of %s ms is less than the least costs",
-			 gr_plain((double)plan->gi.budget_ms, 3).text);
+		snprintf(over, sizeof over, "; nothing fits the budget of %s ms: gi.budget_ms = %s is the least that does",
+			 gr_plain((double)plan->gi.budget_ms, 3).text,
+			 gr_plain(gi_plan_budget_for(plan->update_ms), 3).text);
 	snprintf(plan->why, sizeof plan->why,
 		 "%s: %s; %s%s%s ms a frame while the light changes%s, expected error (nRMSE) %s%s", settings,
 		 reason, plan->baked ? "" : "expected ", count, gr_plain(plan->update_ms, 3).text,

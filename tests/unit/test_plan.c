@@ -48,10 +48,12 @@ static void method_follows_the_scene(void **state)
 	assert_int_equal(plan.gi.method, SCENE_GI_LPV);
 	assert_non_null(strstr(plan.why, "the air scatters"));
 	printf("# %s\n", plan.why);
+	facts.scattering_per_m = 1;
 	facts.environment = true;
 	plan = plan_for(&facts, 30);
 	assert_int_equal(plan.gi.method, SCENE_GI_LPV);
 	assert_non_null(strstr(plan.why, "leaves the environment out"));
+	printf("# %s\n", plan.why);
 	facts.scattering_per_m = 0;
 	for (double budget = 0.01; budget < 1000; budget *= 3) {
 		plan = plan_for(&facts, budget);
@@ -202,6 +204,118 @@ static void air_that_absorbs(void **state)
 	}
 }
 
+static struct gi_facts any_facts(struct unit_random *r)
+{
+	struct gi_facts facts = { 0 };
+	double size = pow(10, unit_random_range(r, -3, 4));
+
+	for (int i = 0; i < 3; i++)
+		facts.size_m[i] = size * unit_random_range(r, 0.01, 1);
+	facts.area_m2 = size * size * unit_random_range(r, 0.1, 20);
+	facts.triangles = unit_random_u32(r) % 2000000;
+	facts.emissive_triangles = unit_random_u32(r) % 3;
+	facts.lamps_fixed = (int)(unit_random_u32(r) % 3);
+	facts.lamps_moving = (int)(unit_random_u32(r) % 3);
+	facts.scattering_per_m = unit_random_u32(r) % 4 ? 0 : pow(10, unit_random_range(r, -6, 2));
+	facts.environment = unit_random_u32(r) % 3 == 0;
+	facts.mirror_share = unit_random_u32(r) % 2 ? 0 : unit_random_range(r, 0, 1);
+	facts.moving_geometry = unit_random_u32(r) % 5 == 0;
+	facts.absorption_per_m = unit_random_u32(r) % 3 ? 0 : pow(10, unit_random_range(r, -3, 1));
+	facts.piece_surfels = unit_random_u32(r) % 2 ? 0 : pow(10, unit_random_range(r, 0, 6));
+	facts.edge_surfels_m = unit_random_u32(r) % 2 ? 0 : size * pow(10, unit_random_range(r, 0, 4));
+	return facts;
+}
+
+/* What surfels leave out of air that scatters, beside what the lattice errs: no step where it begins. */
+static void air_that_scatters(void **state)
+{
+	struct gi_facts facts = room();
+	const struct gi_plan clear = plan_for(&facts, 30);
+	double last = 0;
+	bool lattice = false;
+
+	(void)state;
+	for (double sigma = 1e-6; sigma < 100; sigma *= 1.3) {
+		struct gi_plan plan;
+
+		facts.scattering_per_m = sigma;
+		plan = plan_for(&facts, 30);
+		assert_true(plan.error >= clear.error && plan.error >= last);
+		if (sigma < 1e-3)
+			assert_true(plan.error < 1.01 * clear.error);
+		if (plan.gi.method == SCENE_GI_LPV && !lattice)
+			printf("# the lattice from %.3g/m on, after an error of %.1f %%: %s\n", sigma, 100 * last,
+			       plan.why);
+		if (lattice)
+			assert_int_equal(plan.gi.method, SCENE_GI_LPV);
+		lattice = plan.gi.method == SCENE_GI_LPV;
+		last = plan.error;
+	}
+	assert_true(lattice && last < 0.25);
+	facts.scattering_per_m = 0.1;
+	facts.environment = true;
+	assert_int_equal(plan_for(&facts, 30).gi.method, SCENE_GI_SURFELS);
+	assert_non_null(strstr(plan_for(&facts, 30).why, "which is left out"));
+}
+
+/* A term that no setting changes, however large, does not choose the coarsest settings. */
+static void what_is_missing_chooses_no_settings(void **state)
+{
+	struct gi_facts facts = room(), plain;
+	struct gi_plan a, b;
+
+	(void)state;
+	facts.scattering_per_m = 3;
+	plain = facts;
+	facts.environment = true;
+	facts.mirror_share = 0.3;
+	for (double budget = 4; budget < 1000; budget *= 2) {
+		a = plan_for(&plain, budget);
+		b = plan_for(&facts, budget);
+		assert_int_equal(a.gi.method, SCENE_GI_LPV);
+		if (b.gi.method == SCENE_GI_LPV)
+			assert_int_equal(a.code, b.code);
+	}
+	facts.mirror_share = 0;
+	b = plan_for(&facts, 100);
+	assert_int_equal(b.code, plan_for(&plain, 100).code);
+	assert_true(b.gi.lattice >= 24 && b.error < 0.6);
+	printf("# %s\n", b.why);
+}
+
+/* Where nothing fits, the budget that is advised is one in which something does. */
+static void advice_fits(void **state)
+{
+	struct unit_random r = unit_random_start("advice_fits");
+
+	(void)state;
+	for (int round = 0; round < 300; round++) {
+		const struct gi_facts facts = any_facts(&r);
+		const struct gi_plan least = plan_for(&facts, 1e-9);
+		double budget = gi_plan_budget_for(least.update_ms);
+		struct gi_plan plan;
+
+		if (least.gi.method == SCENE_GI_NONE)
+			continue;
+		assert_false(least.within);
+		assert_true(budget >= GI_PLAN_BUDGET_LEAST && budget < fmax(0.11, 1.11 * least.update_ms));
+		plan = plan_for(&facts, budget);
+		assert_true(plan.within);
+	}
+}
+
+/* What was baked and does not fit is not advised as what would. */
+static void advice_after_the_bake(void **state)
+{
+	const struct gi_facts facts = room();
+	struct gi_plan plan = plan_for(&facts, 0.1), right;
+
+	(void)state;
+	assert_false(gi_plan_baked(&plan, &facts, &gi_costs_usual, (size_t)plan.surfels, &right));
+	assert_false(right.within);
+	assert_true(plan_for(&facts, gi_plan_budget_for(right.update_ms)).within);
+}
+
 static void absurd_wishes(void **state)
 {
 	const double budgets[] = { 0, -1, 1e-30, (double)NAN, -(double)INFINITY };
@@ -210,7 +324,7 @@ static void absurd_wishes(void **state)
 
 	(void)state;
 	assert_false(least.within);
-	assert_non_null(strstr(least.why, "is less than the least costs"));
+	assert_non_null(strstr(least.why, "nothing fits the budget"));
 	for (size_t i = 0; i < sizeof budgets / sizeof *budgets; i++) {
 		struct gi_plan plan = plan_for(&facts, budgets[i]);
 
@@ -257,28 +371,6 @@ static void costs_that_are_none(void **state)
 	gi_plan_make(&plan, &facts, &wanted, &costs);
 	assert_true(plan.error < usual.error);
 	printf("# fast GPU, 20 ms: %s\n", plan.why);
-}
-
-static struct gi_facts any_facts(struct unit_random *r)
-{
-	struct gi_facts facts = { 0 };
-	double size = pow(10, unit_random_range(r, -3, 4));
-
-	for (int i = 0; i < 3; i++)
-		facts.size_m[i] = size * unit_random_range(r, 0.01, 1);
-	facts.area_m2 = size * size * unit_random_range(r, 0.1, 20);
-	facts.triangles = unit_random_u32(r) % 2000000;
-	facts.emissive_triangles = unit_random_u32(r) % 3;
-	facts.lamps_fixed = (int)(unit_random_u32(r) % 3);
-	facts.lamps_moving = (int)(unit_random_u32(r) % 3);
-	facts.scattering_per_m = unit_random_u32(r) % 4 ? 0 : 0.2;
-	facts.environment = unit_random_u32(r) % 3 == 0;
-	facts.mirror_share = unit_random_u32(r) % 2 ? 0 : unit_random_range(r, 0, 1);
-	facts.moving_geometry = unit_random_u32(r) % 5 == 0;
-	facts.absorption_per_m = unit_random_u32(r) % 3 ? 0 : pow(10, unit_random_range(r, -3, 1));
-	facts.piece_surfels = unit_random_u32(r) % 2 ? 0 : pow(10, unit_random_range(r, 0, 6));
-	facts.edge_surfels_m = unit_random_u32(r) % 2 ? 0 : size * pow(10, unit_random_range(r, 0, 4));
-	return facts;
 }
 
 static void more_budget_is_never_worse(void **state)
@@ -401,6 +493,10 @@ int main(void)
 		cmocka_unit_test(edges_count),
 		cmocka_unit_test(as_baked),
 		cmocka_unit_test(air_that_absorbs),
+		cmocka_unit_test(air_that_scatters),
+		cmocka_unit_test(what_is_missing_chooses_no_settings),
+		cmocka_unit_test(advice_fits),
+		cmocka_unit_test(advice_after_the_bake),
 		cmocka_unit_test(absurd_wishes),
 		cmocka_unit_test(costs_that_are_none),
 		cmocka_unit_test(more_budget_is_never_worse),
