@@ -27,9 +27,9 @@ tests_unit_test_bench_CFLAGS = $(TEST_CFLAGS) $(EPOXY_CFLAGS) $(JSONC_CFLAGS)
 tests_unit_test_bench_LDADD = tools/libgbench.a tools/libgtools.a $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm
 
 # The command from outside. Scripts run in the build folder and read $(srcdir).
-dist_check_SCRIPTS += tests/command/check.sh tests/command/demo.sh tests/command/double.sh \
+dist_check_SCRIPTS += tests/command/bake.sh tests/command/check.sh tests/command/demo.sh tests/command/double.sh \
 	tests/command/report.sh
-TESTS += tests/command/check.sh tests/command/demo.sh tests/command/report.sh
+TESTS += tests/command/bake.sh tests/command/check.sh tests/command/demo.sh tests/command/report.sh
 EXTRA_DIST += \
 	tests/data/key-missing.cave \
 	tests/data/picture.png \

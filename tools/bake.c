@@ -6,6 +6,7 @@
 #include "tools/cli.h"
 #include "tools/command.h"
 #include "tools/load.h"
+#include "tools/plan.h"
 #include "tools/progress.h"
 #include "tools/say.h"
 
@@ -15,6 +16,7 @@
 struct bake_options {
 	const char *out;
 	int threads;
+	int gpu;
 	bool force;
 };
 
@@ -26,6 +28,7 @@ struct bake_run {
 	struct surfel_set *set;
 	struct surfel_store_done done;
 	struct progress progress;
+	bool planned; /* file->gi is what a node chooses */
 };
 
 static void run_finish(struct bake_run *run)
@@ -42,6 +45,23 @@ static bool show(void *ctx, const char *stage, double done, double seconds_left)
 
 	progress_show(&run->progress, done, seconds_left, stage);
 	return !progress_asked_to_end();
+}
+
+/* gi.method = "auto": as a node of this machine, so that it finds what it needs. */
+static int plan(struct bake_run *run)
+{
+	int result = plan_as_node(&run->file->gi, run->file, run->scene, run->options->gpu);
+
+	run->planned = result == GR_OK;
+	return result == GR_NOTHING ? GR_OK : result;
+}
+
+/* Of what a plan chose, surfels and probes alone are baked. */
+static bool needs_none(const struct bake_run *run)
+{
+	enum scene_gi_method method = run->file->gi.method;
+
+	return run->planned && method != SCENE_GI_SURFELS && method != SCENE_GI_PROBES;
 }
 
 static int get(struct bake_run *run)
@@ -95,18 +115,21 @@ static void report(const struct bake_run *run)
 
 int command_bake(int argc, char **argv)
 {
-	struct bake_options o = { 0 };
+	struct bake_options o = { .gpu = -1 };
 	const struct cli_option options[] = {
 		{ "force", 'f', CLI_FLAG, &o.force, 0, 0, NULL, "even if there is a file that fits" },
+		{ "gpu", 0, CLI_INT, &o.gpu, -1, 64, "N",
+		  "that chooses where gi.method is \"auto\": EGL device, -1: the first that works (-1)" },
 		{ "threads", 'j', CLI_INT, &o.threads, 0, 256, "N", "0: one a core (0)" },
 		{ "out", 'o', CLI_TEXT, &o.out, 0, 0, "FILE",
 		  "this file, instead of SCENE.surfels beside the scene" },
 	};
 	const struct cli_table table = {
-		"grotto bake SCENE [--force] [--threads N] [--out FILE]",
+		"grotto bake SCENE [--force] [--threads N] [--gpu N] [--out FILE]",
 		"Computes what relit surfels need of a scene, so that the room need not wait for it at\n"
 		"its start. The file is kept beside the scene, or else in the cache; nodes look there,\n"
-		"and bake by themselves what they do not find. Equal for any number of threads.",
+		"and bake by themselves what they do not find. Equal for any number of threads. With\n"
+		"gi.method = \"auto\" spacing and links are those that a node on this GPU chooses.",
 		options, sizeof options / sizeof options[0]
 	};
 	struct bake_run run = { .options = &o };
@@ -123,12 +146,12 @@ int command_bake(int argc, char **argv)
 	}
 	result = load_scene(argv[1], &run.file, &run.scene);
 	if (result == GR_OK && run.file->gi.method == SCENE_GI_AUTO)
-		/* the choice is of a GPU's costs, which may be of another machine */
-		fprintf(stderr,
-			"warning: %s: gi.method is \"auto\": a node chooses spacing and links by its GPU and "
-			"bakes again where they differ from these; with gi.method = \"surfels\" what is "
-			"baked here is used\n",
-			argv[1]);
+		result = plan(&run);
+	if (result == GR_OK && needs_none(&run)) {
+		printf("nothing to bake\n");
+		run_finish(&run);
+		return GR_EXIT_OK;
+	}
 	if (result == GR_OK)
 		result = get(&run);
 	if (result == GR_OK)

@@ -30,6 +30,7 @@ tools_grotto_SOURCES = \
 	tools/doctor.c \
 	tools/faults.c \
 	tools/key.c \
+	tools/plan.c tools/plan.h \
 	tools/record.c tools/record_export.c tools/record_info.c tools/record_info.h \
 	tools/reference.c tools/reference.h \
 	tools/reference_picture.c \

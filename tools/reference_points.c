@@ -5,6 +5,7 @@
 #include "renderer/gi/surfel_bake.h"
 #include "renderer/gi/surfel_store.h"
 #include "renderer/trace/rays.h"
+#include "tools/plan.h"
 #include "tools/say.h"
 
 #include <ctype.h>
@@ -131,15 +132,15 @@ static bool show_bake(void *ctx, const char *stage, double done, double seconds_
 }
 
 /* Those that are baked already. GR_NOTHING: none, or of another scene. */
-static int read_surfels(struct reference_run *run, struct surfel_set **out)
+static int read_surfels(struct reference_run *run, const struct scene_file *file, struct surfel_set **out)
 {
 	struct surfel_bake_params params;
 	struct surfel_store_done done;
 	struct surfel_store store;
 	struct gr_diag diag = { 0 };
-	int result = surfel_store_init(&store, run->file);
+	int result = surfel_store_init(&store, file);
 
-	surfel_bake_params_of(run->file, &params);
+	surfel_bake_params_of(file, &params);
 	if (result == GR_OK)
 		result = surfel_store_read(&store, out, run->scene, &params, &diag, &done);
 	say_diag(&diag);
@@ -151,13 +152,13 @@ static int read_surfels(struct reference_run *run, struct surfel_set **out)
 }
 
 /* The places alone: what surfels are baked for beside is as little as may be. */
-static int bake_surfels(struct reference_run *run, struct surfel_set **out)
+static int bake_surfels(struct reference_run *run, const struct scene_file *file, struct surfel_set **out)
 {
 	struct surfel_bake_params params;
 	struct gr_diag diag = { 0 };
 	int result;
 
-	surfel_bake_params_of(run->file, &params);
+	surfel_bake_params_of(file, &params);
 	params.links = 16;
 	params.taps = 1;
 	params.probes = 0;
@@ -165,7 +166,7 @@ static int bake_surfels(struct reference_run *run, struct surfel_set **out)
 	params.progress = show_bake;
 	params.ctx = run;
 	progress_start(&run->progress, "surfels");
-	result = surfel_bake(out, run->scene, run->file, &params, &diag);
+	result = surfel_bake(out, run->scene, file, &params, &diag);
 	progress_end(&run->progress);
 	say_diag(&diag);
 	gr_diag_finish(&diag);
@@ -174,11 +175,15 @@ static int bake_surfels(struct reference_run *run, struct surfel_set **out)
 
 static int place_surfels(struct reference_run *run, struct points *points)
 {
+	struct scene_file file = *run->file; /* all but gi is borrowed */
 	struct surfel_set *set = NULL;
-	int result = read_surfels(run, &set);
+	int result;
 
+	if (file.gi.method == SCENE_GI_AUTO)
+		plan_as_node(&file.gi, run->file, run->scene, -1);
+	result = read_surfels(run, &file, &set);
 	if (result == GR_NOTHING)
-		result = bake_surfels(run, &set);
+		result = bake_surfels(run, &file, &set);
 	for (size_t i = 0; result == GR_OK && i < set->count; i++) {
 		struct reference_point *point = grow(points);
 
