@@ -9,8 +9,10 @@
 
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 static void run_finish(struct reference_run *run)
 {
@@ -80,6 +82,28 @@ static bool can_write(const char *path)
 	return true;
 }
 
+/* The sums are written beside and renamed, so it is the folder that counts. false: said on stderr. */
+static bool can_keep(const char *path)
+{
+	char *copy, *slash;
+	bool good;
+
+	if (!path)
+		return true;
+	copy = strdup(path);
+	if (!copy)
+		return false;
+	slash = strrchr(copy, '/');
+	if (slash)
+		slash[slash == copy] = '\0';
+	good = access(slash ? copy : ".", W_OK | X_OK) == 0;
+	if (!good)
+		fprintf(stderr, "grotto reference: --resume %s: its folder cannot be written: %s\n", path,
+			strerror(errno));
+	free(copy);
+	return good;
+}
+
 /* false: said on stderr. */
 static bool sound(const struct reference_options *o, int words)
 {
@@ -119,7 +143,7 @@ int command_reference(int argc, char **argv)
 		{ "size", 's', CLI_SIZE, o.size, 1, 16384, "WxH",
 		  "pixels (the camera's or the wall's)" },
 		{ "samples", 'n', CLI_INT, &o.samples, 1, 1 << 30, "N",
-		  "most a pixel or point (256)" },
+		  "a pixel or point, rounded up to sets of 16, 2 at least (256)" },
 		{ "until-error", 'u', CLI_REAL, &o.until_percent, 0, 100, "PERCENT",
 		  "stop when the standard error is below, rms over mean" },
 		{ "seed", 0, CLI_INT, &o.seed, 0, INT32_MAX, "N", "of the samples (1)" },
@@ -158,7 +182,8 @@ int command_reference(int argc, char **argv)
 	}
 	if (!sound(&o, words))
 		return GR_EXIT_CONFIG;
-	if (!can_write(o.out) || !can_write(o.png) || !can_write(o.points_out))
+	if (!can_write(o.out) || !can_write(o.png) || !can_write(o.points_out) ||
+	    !can_keep(o.resume))
 		return GR_EXIT_RUNTIME;
 	result = trace(&run, argv[1]);
 	run_finish(&run);

@@ -74,6 +74,12 @@ timeout 60 "$grotto" bake "$scene" --out "$folder/pipe" >"$folder/bake.log" 2>&1
 	fail "a picture went into a pipe"
 [ -p "$folder/pipe" ] || fail "bake: the pipe is gone: $(cat "$folder/bake.log")"
 
+# A folder that is not there is found before anything is traced.
+said=$(timeout 20 "$grotto" reference "$scene" --size 24x24 -n 100000000 --resume "$folder/none.d/film" \
+	-o "$folder/x.exr" 2>&1)
+[ $? = 1 ] || fail "resume to no folder: exit $?: $said"
+case $said in *"none.d/film: its folder cannot be written"*) ;; *) fail "resume to no folder: $said" ;; esac
+
 # Ctrl-C: what there is, and the sums to go on from.
 "$grotto" reference "$scene" --size 24x24 -n 100000000 --resume "$folder/long" -o "$folder/long.exr" \
 	>"$folder/long.log" 2>&1 &

@@ -170,7 +170,18 @@ static int take_setting(struct scene_gi *gi, char *text, bool first, FILE *err)
 	return GR_OK;
 }
 
-int bench_case_check(const struct scene_file *file, const struct scene_gi *gi, FILE *err)
+/* Without "file:line: ": the lines are of the text that was written to be checked. */
+static const char *bare(const char *text, const char *path)
+{
+	size_t len = path ? strlen(path) : 0, digits;
+
+	if (!len || strncmp(text, path, len) != 0 || text[len] != ':')
+		return text;
+	digits = strspn(text + len + 1, "0123456789");
+	return strncmp(text + len + 1 + digits, ": ", 2) == 0 ? text + len + digits + 3 : text;
+}
+
+int bench_case_check(const struct scene_file *file, const struct scene_gi *gi, const char *word, FILE *err)
 {
 	struct scene_file changed = *file, *read = NULL;
 	struct gr_diag diag = { 0 };
@@ -188,18 +199,20 @@ int bench_case_check(const struct scene_file *file, const struct scene_gi *gi, F
 		result = scene_file_parse(text, size, file->path, &read, &diag);
 	for (size_t i = 0; i < diag.count; i++)
 		if (diag.items[i].severity == GR_DIAG_ERROR)
-			fprintf(err, "with %s: %s\n", bench_method_name(gi->method), diag.items[i].text);
+			fprintf(err, "%s '%s': %s\n", word ? "--settings" : "with", word ? word : bench_method_name(gi->method),
+				bare(diag.items[i].text, file->path));
 	gr_diag_finish(&diag);
 	scene_file_destroy(&read);
 	free(text);
 	return result == GR_OK || result == GR_ERR_NOMEM ? result : GR_ERR_CONFIG;
 }
 
+/* word: that it was given as; NULL: of the usual ones. */
 static int add(struct bench_cases *cases, const struct scene_file *file, const struct scene_gi *gi,
-	       FILE *err)
+	       const char *word, FILE *err)
 {
 	struct bench_case *c = &cases->items[cases->count];
-	int result = bench_case_check(file, gi, err);
+	int result = bench_case_check(file, gi, word, err);
 
 	if (result != GR_OK)
 		return result;
@@ -252,7 +265,7 @@ static int add_usual(struct bench_cases *cases, const struct scene_file *file,
 		}
 		/* no sharing on one machine, and no lattice is shared */
 		gi.share = SCENE_SHARE_LOCAL;
-		result = add(cases, file, &gi, err);
+		result = add(cases, file, &gi, NULL, err);
 	}
 	return result;
 }
@@ -269,18 +282,20 @@ static int add_given(struct bench_cases *cases, const struct scene_file *file,
 	for (row = text ? strtok_r(text, " \t\n", &row_place) : NULL; row && result == GR_OK;
 	     row = strtok_r(NULL, " \t\n", &row_place)) {
 		struct scene_gi gi = file->gi;
-		char *place, *item;
+		char *place, *item, *word = strdup(row);
 		bool first = true;
 
-		for (item = strtok_r(row, ",", &place); item && result == GR_OK;
+		result = word ? GR_OK : GR_ERR_NOMEM;
+		for (item = word ? strtok_r(row, ",", &place) : NULL; item && result == GR_OK;
 		     item = strtok_r(NULL, ",", &place), first = false)
 			result = take_setting(&gi, item, first, err);
 		*out_all += !first;
-		if (result != GR_OK || gi.method != method || first)
-			continue;
-		gi.share = SCENE_SHARE_LOCAL;
-		++*out_taken;
-		result = add(cases, file, &gi, err);
+		if (result == GR_OK && gi.method == method && !first) {
+			gi.share = SCENE_SHARE_LOCAL;
+			++*out_taken;
+			result = add(cases, file, &gi, word, err);
+		}
+		free(word);
 	}
 	free(text);
 	return result;

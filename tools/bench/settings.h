@@ -38,7 +38,10 @@ struct bench_cases {
  */
 int bench_cases_make(struct bench_cases *out, const struct scene_file *file, const char *methods,
 		     const char *settings, double lit_area, FILE *err);
-/* The scene file's own settings with that method instead, checked. GR_OK or GR_ERR_CONFIG. */
-int bench_case_check(const struct scene_file *file, const struct scene_gi *gi, FILE *err);
+/*
+ * The scene file's own settings with that method instead, checked. word: what of
+ * --settings gave them, for messages; NULL: nothing. GR_OK or GR_ERR_CONFIG.
+ */
+int bench_case_check(const struct scene_file *file, const struct scene_gi *gi, const char *word, FILE *err);
 
 #endif
