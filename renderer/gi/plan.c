@@ -1,10 +1,8 @@
 #include "renderer/gi/plan.h"
 
 #include "renderer/gi/plan_private.h"
-#include "renderer/gi/surfel_bake.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Rays that baking may take: about half a minute on two cores. */
 #define RAYS_MOST 2.4e7
@@ -12,14 +10,6 @@
 #define SPACING_MOST 1000.0
 #define PROBES_RAYS_MOST 2.4e7
 #define PLAN_TAPS 64 /* with fewer the edge of a moving shadow flickers (docs/results.md) */
-
-const struct gi_costs gi_costs_usual = {
-	.lattice_frame = 2e6,
-	.lattice_cell_step = 180,
-	.surfel_frame = 5e5,
-	.surfel_tap = 25,
-	.surfel_link = 1.5,
-};
 
 static const double surfel_counts[] = { 250, 500, 1000, 2000, 4000, 8000, 16000, 32000, 64000 };
 static const int link_counts[] = { 64, 128, 256, 512, 1024 };
@@ -29,81 +19,12 @@ static const int lattice_counts[] = { 8, 12, 16, 20, 24, 32, 48, 64 };
 static const int step_counts[] = { 2, 4, 8, 16 };
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
-bool gi_costs_valid(const struct gi_costs *c)
-{
-	const double frames[] = { c->lattice_frame, c->surfel_frame };
-	const double units[] = { c->lattice_cell_step, c->surfel_tap, c->surfel_link };
-
-	for (size_t i = 0; i < COUNT(frames); i++)
-		if (!(frames[i] >= 0 && frames[i] < 1e11))
-			return false;
-	for (size_t i = 0; i < COUNT(units); i++)
-		if (!(units[i] > 0 && units[i] < 1e9))
-			return false;
-	return true;
-}
-
-/* Cells (or probes) of a grid with so many along the longest side. */
-static double grid_cells(const struct gi_facts *facts, int longest)
-{
-	double most = fmax(fmax(facts->size_m[0], facts->size_m[1]), facts->size_m[2]);
-	double cells = 1;
-
-	for (int i = 0; i < 3 && most > 0; i++)
-		cells *= fmax(1, ceil(facts->size_m[i] / most * longest));
-	return cells;
-}
-
 /* That gives so many, as far as a spacing can. */
 static double exact_spacing(const struct gi_facts *facts, double count)
 {
 	double edge = facts->edge_surfels_m, left = fmax(count - facts->piece_surfels, count / 16);
 
 	return (edge + sqrt(edge * edge + 4 * left * SURFEL_DENSITY * facts->area_m2)) / (2 * left);
-}
-
-double gi_plan_spacing(const struct gi_facts *facts, const struct scene_gi *gi)
-{
-	double spacing = (double)gi->spacing_m;
-
-	return spacing > 0 ? spacing : sqrt(SURFEL_DENSITY * facts->area_m2 / SURFEL_USUAL);
-}
-
-double gi_plan_surfels(const struct gi_facts *facts, const struct scene_gi *gi)
-{
-	double spacing = gi_plan_spacing(facts, gi);
-
-	return SURFEL_DENSITY * facts->area_m2 / (spacing * spacing) + facts->edge_surfels_m / spacing +
-	       facts->piece_surfels;
-}
-
-static double cost_of(const struct gi_facts *facts, const struct scene_gi *gi,
-		      const struct gi_costs *c, double surfels)
-{
-	double lamps = facts->lamps_fixed + facts->lamps_moving, ns = 0;
-
-	switch (gi->method) {
-	case SCENE_GI_LPV:
-		ns = c->lattice_frame + grid_cells(facts, gi->lattice) * gi->steps * c->lattice_cell_step;
-		break;
-	case SCENE_GI_SURFELS:
-	case SCENE_GI_PROBES:
-		ns = c->surfel_frame + surfels * gi->taps * lamps * c->surfel_tap +
-		     surfels * gi->links * gi->gathers * c->surfel_link;
-		if (gi->method == SCENE_GI_PROBES)
-			ns += grid_cells(facts, gi->probes) * gi->links * c->surfel_link;
-		break;
-	case SCENE_GI_NONE:
-	case SCENE_GI_AUTO:
-		break;
-	}
-	return ns * 1e-6;
-}
-
-double gi_plan_cost_ms(const struct gi_facts *facts, const struct scene_gi *gi,
-		       const struct gi_costs *costs)
-{
-	return cost_of(facts, gi, costs, gi_plan_surfels(facts, gi));
 }
 
 struct search {
@@ -175,7 +96,7 @@ static void consider_probes(struct search *s, struct scene_gi gi)
 	gi.method = SCENE_GI_PROBES;
 	for (size_t i = 0; i < COUNT(probe_counts); i++) {
 		gi.probes = probe_counts[i];
-		if (grid_cells(s->facts, gi.probes) * gi.links <= PROBES_RAYS_MOST)
+		if (gi_plan_grid_cells(s->facts, gi.probes) * gi.links <= PROBES_RAYS_MOST)
 			consider(s, &gi);
 	}
 }
@@ -299,7 +220,7 @@ bool gi_plan_baked(struct gi_plan *plan, const struct gi_facts *facts, const str
 
 	plan->surfels = (double)surfels;
 	plan->baked = true;
-	plan->update_ms = cost_of(facts, &plan->gi, c, plan->surfels);
+	plan->update_ms = gi_plan_cost_of(facts, &plan->gi, c, plan->surfels);
 	plan->within = plan->update_ms <= budget;
 	complete(plan, facts);
 	found.edge_surfels_m = fmax(0, (plan->surfels - flat) * spacing);

@@ -19,6 +19,11 @@ double gi_plan_scattered(const struct gi_facts *facts);
 bool gi_plan_has_light(const struct gi_facts *facts);
 /* Metres; the baker's own where the settings name none. */
 double gi_plan_spacing(const struct gi_facts *facts, const struct scene_gi *gi);
+/* Cells (or probes) of a grid with so many along the longest side. */
+double gi_plan_grid_cells(const struct gi_facts *facts, int longest);
+/* gi_plan_cost_ms with so many surfels. */
+double gi_plan_cost_of(const struct gi_facts *facts, const struct scene_gi *gi,
+		       const struct gi_costs *costs, double surfels);
 /* why, from all else. */
 void gi_plan_say(struct gi_plan *plan, const struct gi_facts *facts);
 
