@@ -118,7 +118,8 @@ struct surfels {
 	struct surfels_buffer albedo, emissive, other; /* RGBA32F as all that follow */
 	struct surfels_buffer direct;	       /* of the lamps, W/m^2 */
 	struct surfels_buffer found;	       /* indirect + other: the newest */
-	struct surfels_buffer shown;	       /* the same smoothed, as shading reads it */
+	struct surfels_buffer half;	       /* smoothed once */
+	struct surfels_buffer shown;	       /* smoothed twice, as shading reads it */
 	struct surfels_buffer around_first, around; /* what is summed up for it */
 	struct surfels_buffer radiosity[2];    /* [current] is the newest; one dark surfel at the end */
 	int current;

@@ -3,8 +3,9 @@
  * Shading would show that as blotches. So what it reads is a plane fitted to the
  * light of all surfels that are heard at a surfel (moving least squares,
  * Lancaster and Salkauskas 1981), at its place: a weighted sum, whose weights
- * depend on places alone. A linear course of light comes out as it is.
- * Gathers read the light as it was found.
+ * depend on places alone. A linear course of light comes out as it is. It is done
+ * twice: once leaves blotches two spacings wide that an eye finds, twice those that
+ * are half as strong. Gathers read the light as it was found.
  */
 #include "renderer/gi/surfels_private.h"
 
@@ -121,13 +122,20 @@ void surfels_smooth_finish(struct surfels *s)
 	surfels_storage_finish(&s->around);
 }
 
+static void pass(const struct surfels *s, const struct surfels_buffer *from,
+		 const struct surfels_buffer *to)
+{
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SURFELS_BINDING_FOUND, to->buffer);
+	glBindTextureUnit(SURFELS_UNIT_RADIOSITY, from->texture);
+	surfels_dispatch(s->smooth, (struct surfels_run){ 0, (uint32_t)s->count });
+	surfels_barrier();
+}
+
 void surfels_smooth(struct surfels *s)
 {
 	glBindTextureUnit(SURFELS_UNIT_BEFORE, s->around_first.texture);
 	glBindTextureUnit(SURFELS_UNIT_PARTS, s->around.texture);
-	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SURFELS_BINDING_FOUND, s->shown.buffer);
 	glBindBufferBase(GL_UNIFORM_BUFFER, SURFELS_BINDING_BLOCK, s->block);
-	glBindTextureUnit(SURFELS_UNIT_RADIOSITY, s->found.texture);
-	surfels_dispatch(s->smooth, (struct surfels_run){ 0, (uint32_t)s->count });
-	surfels_barrier();
+	pass(s, &s->found, &s->half);
+	pass(s, &s->half, &s->shown);
 }

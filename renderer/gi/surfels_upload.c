@@ -248,8 +248,8 @@ static int settle_gathers(const struct surfel_set *set, int *out)
 int surfels_upload(struct surfels *s, const struct surfel_set *set)
 {
 	size_t colours = (set->count + 1) * 4 * sizeof(float);
-	struct surfels_buffer *const work[5] = { &s->direct, &s->found, &s->shown, &s->radiosity[0],
-						&s->radiosity[1] };
+	struct surfels_buffer *const work[6] = { &s->direct, &s->found,	       &s->half,
+						&s->shown,  &s->radiosity[0], &s->radiosity[1] };
 	int result = upload_texels(s, set);
 
 	if (result == GR_OK)
@@ -267,7 +267,7 @@ int surfels_upload(struct surfels *s, const struct surfel_set *set)
 	if (result == GR_OK)
 		result = upload_colours(s, &s->other, "fixed light",
 					(const float(*)[3])set->fixed_other, NULL, set->count);
-	for (size_t i = 0; i < 5 && result == GR_OK; i++)
+	for (size_t i = 0; i < 6 && result == GR_OK; i++)
 		result = surfels_storage(s, work[i], "light", GL_RGBA32F, colours, NULL);
 	if (result == GR_OK)
 		result = upload_grid(s, set);
@@ -278,13 +278,13 @@ int surfels_upload(struct surfels *s, const struct surfel_set *set)
 
 void surfels_upload_finish(struct surfels *s)
 {
-	struct surfels_buffer *const all[14] = {
+	struct surfels_buffer *const all[15] = {
 		&s->texels, &s->links, &s->taps,  &s->albedo,	    &s->emissive,
-		&s->other,  &s->direct, &s->found, &s->shown,	    &s->radiosity[0],
-		&s->radiosity[1], &s->first, &s->members, &s->keys,
+		&s->other,  &s->direct, &s->found, &s->half,	    &s->shown,
+		&s->radiosity[0], &s->radiosity[1], &s->first, &s->members, &s->keys,
 	};
 
-	for (size_t i = 0; i < 14; i++)
+	for (size_t i = 0; i < 15; i++)
 		surfels_storage_finish(all[i]);
 	glDeleteBuffers(1, &s->block);
 }
