@@ -17,6 +17,7 @@
 #define RECEIVE_MOST 256
 /* A master that waits for a slow node still speaks several times a second. */
 #define SILENCE_NS (5 * GR_NS_PER_S)
+#define ONCE_PATIENCE_NS (30 * GR_NS_PER_S) /* with --once: a lost master that is silent as long has ended */
 #define WINDOW_NS (100 * GR_NS_PER_MS) /* a window is answered while no frame comes */
 #define GPU_SLICE_NS GR_NS_PER_MS /* the longest that the socket waits for the GPU */
 
@@ -131,6 +132,7 @@ static void on_event(void *ctx, const struct fdp_node_event *event)
 	case FDP_NODE_JOINED:
 		n->counts.joined++;
 		n->master_gone = n->orphan = false;
+		n->lost_ns = 0;
 		node_swap_begin(&n->swap);
 		gr_notice("joined the master");
 		break;
@@ -140,6 +142,7 @@ static void on_event(void *ctx, const struct fdp_node_event *event)
 	case FDP_NODE_LOST:
 		n->counts.lost++;
 		n->master_gone = n->orphan = true;
+		n->lost_ns = now_ns;
 		gr_warning("%s: asking to join again",
 			   event->reason ? event->reason : "nothing is heard from the master");
 		break;
@@ -232,6 +235,16 @@ static void log_send_failures(struct node *n, int64_t now_ns)
 			   strerror(stats.send_errno));
 }
 
+/* Its word that it leaves may have been lost. */
+static void look_for_end(struct node *n, int64_t now_ns)
+{
+	if (!n->params.once || n->lost_ns == 0 || now_ns - n->lost_ns < ONCE_PATIENCE_NS)
+		return;
+	gr_warning("the master has been silent for %d s and is taken to have ended",
+		   (int)((now_ns - n->lost_ns) / GR_NS_PER_S));
+	loop_stop(n->loop);
+}
+
 static void on_second(void *ctx, int64_t now_ns)
 {
 	struct node *n = ctx;
@@ -247,6 +260,7 @@ static void on_second(void *ctx, int64_t now_ns)
 		notify_status("%s", fdp_node_state_name(state));
 	n->logged_swapped = n->counts.swapped;
 	log_send_failures(n, now_ns);
+	look_for_end(n, now_ns);
 	loop_timer_set(n->loop, n->second_timer, now_ns + GR_NS_PER_S);
 }
 

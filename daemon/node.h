@@ -79,6 +79,7 @@ struct node {
 	int64_t swap_ns;          /* of a swap that is not yet reported; 0: none */
 	uint64_t report;          /* frame of that swap */
 	bool master_gone;         /* left, refused, or lost: nothing will come */
+	int64_t lost_ns;          /* since when nothing is heard from it; 0: it is, or none was there */
 	bool orphan;              /* the wall is to show what it shows without a master */
 	int status;               /* enum gr_exit, when the loop stops */
 

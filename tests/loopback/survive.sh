@@ -57,3 +57,15 @@ done
 [ "$(field "$dir/master.json" evicted)" -eq 0 ] || fail "the new master gave up nodes that lived"
 all_equal $(light_hashes) || fail "the nodes' light differs: $(light_hashes | tr '\n' ' ')"
 echo "ok: SIGTERM in the middle of frames"
+
+# A node that may end with its master does so, too, when its last word was lost. (35 s)
+if [ "${GROTTO_LONG:-0}" != 0 ]; then
+	start_master --expect 1
+	start_node front --once
+	wait_for 60 frame_is_past 5
+	kill -9 "$master_pid"
+	wait "$master_pid" 2>/dev/null
+	wait_for 60 says front "is taken to have ended"
+	ends "$pid_front" 0 front
+	echo "ok: a node ended after a master that said nothing"
+fi
