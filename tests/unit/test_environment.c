@@ -258,7 +258,7 @@ static void refusals(void **state)
 	refused(4, 2, 3, NAN, 1, "pixel 3 of row 1 is nan");
 	refused(4, 2, 3, INFINITY, 1, "is inf");
 	refused(4, 2, 3, -INFINITY, 1, "is -inf");
-	refused(4, 2, 3, 1e10f, 1e9f, "more than 1e+12");
+	refused(4, 2, 3, 1e10f, 1e9f, "more than 1000000000000 W");
 	refused(8200, 2, 1, 1, 1, "at most 8192");
 	refused(4, 2, 4, 1, 1, "4 channels");
 	/* Taken, with a warning each: negative values, and another shape. */
