@@ -98,7 +98,6 @@ static int64_t swap_time(const struct fdp_peer *peer, int64_t swap_ns, int64_t n
 
 static void note_swap(struct fdp_peer *peer, const struct fdp_report *report, int64_t now_ns)
 {
-
 	if (report->swapped_count <= peer->status.swapped)
 		return;
 	peer->status.swapped = report->swapped_count;

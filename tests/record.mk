@@ -22,7 +22,7 @@ TESTS += tests/loopback/record.sh tests/loopback/replay.sh
 
 EXTRA_DIST += \
 	tests/fuzz/fuzz_record.c \
-	tests/fuzz/corpus/record/damaged \
+	tests/fuzz/corpus/record/damaged tests/fuzz/corpus/record/room \
 	tests/fuzz/corpus/record/far-apart \
 	tests/fuzz/corpus/record/short \
 	tests/fuzz/corpus/record/two
