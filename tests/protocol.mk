@@ -2,6 +2,12 @@
 PROTOCOL_TEST_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS)
 PROTOCOL_TEST_LDADD = $(PROTOCOL_LIBS) $(CMOCKA_LIBS)
 
+# A simulated cluster, and a light that it shares out.
+CLUSTER_SIM_SOURCES = tests/unit/cluster_sim.c tests/unit/cluster_sim.h \
+	tests/unit/cluster_sim_assert.c tests/unit/cluster_sim_daemons.c \
+	tests/unit/cluster_sim_net.c tests/unit/cluster_sim_private.h tests/unit/unit.h
+SHARE_ROOM_SOURCES = tests/unit/share_room.c tests/unit/share_room.h $(CLUSTER_SIM_SOURCES)
+
 PROTOCOL_TESTS = \
 	tests/unit/test_clock_offset \
 	tests/unit/test_cluster \
@@ -12,6 +18,8 @@ PROTOCOL_TESTS = \
 	tests/unit/test_params \
 	tests/unit/test_peer \
 	tests/unit/test_share \
+	tests/unit/test_share_hostile \
+	tests/unit/test_share_weather \
 	tests/unit/test_trust \
 	tests/unit/test_swap \
 	tests/unit/test_way \
@@ -22,12 +30,10 @@ TESTS += $(PROTOCOL_TESTS)
 tests_unit_test_clock_offset_SOURCES = tests/unit/test_clock_offset.c tests/unit/unit.h
 tests_unit_test_clock_offset_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_clock_offset_LDADD = $(PROTOCOL_TEST_LDADD)
-tests_unit_test_cluster_SOURCES = tests/unit/test_cluster.c \
-	tests/unit/cluster_sim.c tests/unit/cluster_sim.h tests/unit/unit.h
+tests_unit_test_cluster_SOURCES = tests/unit/test_cluster.c $(CLUSTER_SIM_SOURCES)
 tests_unit_test_cluster_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_cluster_LDADD = $(PROTOCOL_TEST_LDADD)
-tests_unit_test_cluster_hostile_SOURCES = tests/unit/test_cluster_hostile.c \
-	tests/unit/cluster_sim.c tests/unit/cluster_sim.h tests/unit/unit.h
+tests_unit_test_cluster_hostile_SOURCES = tests/unit/test_cluster_hostile.c $(CLUSTER_SIM_SOURCES)
 tests_unit_test_cluster_hostile_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_cluster_hostile_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_fragment_SOURCES = tests/unit/test_fragment.c tests/unit/unit.h
@@ -46,20 +52,22 @@ tests_unit_test_params_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_peer_SOURCES = tests/unit/test_peer.c tests/unit/unit.h
 tests_unit_test_peer_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_peer_LDADD = $(PROTOCOL_TEST_LDADD)
-tests_unit_test_share_SOURCES = tests/unit/test_share.c \
-	tests/unit/cluster_sim.c tests/unit/cluster_sim.h tests/unit/unit.h
+tests_unit_test_share_SOURCES = tests/unit/test_share.c $(SHARE_ROOM_SOURCES)
 tests_unit_test_share_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_share_LDADD = $(PROTOCOL_TEST_LDADD)
-tests_unit_test_trust_SOURCES = tests/unit/test_trust.c \
-	tests/unit/cluster_sim.c tests/unit/cluster_sim.h tests/unit/unit.h
+tests_unit_test_share_hostile_SOURCES = tests/unit/test_share_hostile.c $(SHARE_ROOM_SOURCES)
+tests_unit_test_share_hostile_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_unit_test_share_hostile_LDADD = $(PROTOCOL_TEST_LDADD)
+tests_unit_test_share_weather_SOURCES = tests/unit/test_share_weather.c $(SHARE_ROOM_SOURCES)
+tests_unit_test_share_weather_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_unit_test_share_weather_LDADD = $(PROTOCOL_TEST_LDADD)
+tests_unit_test_trust_SOURCES = tests/unit/test_trust.c $(CLUSTER_SIM_SOURCES)
 tests_unit_test_trust_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_trust_LDADD = $(PROTOCOL_TEST_LDADD)
-tests_unit_test_swap_SOURCES = tests/unit/test_swap.c \
-	tests/unit/cluster_sim.c tests/unit/cluster_sim.h tests/unit/unit.h
+tests_unit_test_swap_SOURCES = tests/unit/test_swap.c $(CLUSTER_SIM_SOURCES)
 tests_unit_test_swap_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_swap_LDADD = $(PROTOCOL_TEST_LDADD)
-tests_unit_test_way_SOURCES = tests/unit/test_way.c \
-	tests/unit/cluster_sim.c tests/unit/cluster_sim.h tests/unit/unit.h
+tests_unit_test_way_SOURCES = tests/unit/test_way.c $(CLUSTER_SIM_SOURCES)
 tests_unit_test_way_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_way_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_wire_SOURCES = tests/unit/test_wire.c tests/unit/unit.h
