@@ -6,22 +6,22 @@ tests_unit_test_options_SOURCES = tests/unit/test_options.c tests/unit/unit.h te
 tests_unit_test_options_CFLAGS = $(TEST_CFLAGS) $(LIBCONFIG_CFLAGS)
 tests_unit_test_options_LDADD = $(CONFIG_LIBS) $(CMOCKA_LIBS)
 
+LAYOUT_TEXT_SOURCES = tests/unit/layout_text.h tests/unit/unit.h tests/unit/unit_config.h
 check_PROGRAMS += tests/unit/test_layout
 TESTS += tests/unit/test_layout
-tests_unit_test_layout_SOURCES = tests/unit/test_layout.c tests/unit/unit.h tests/unit/unit_config.h
+tests_unit_test_layout_SOURCES = tests/unit/test_layout.c $(LAYOUT_TEXT_SOURCES)
 tests_unit_test_layout_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_layout_LDADD = $(CONFIG_LIBS) $(CMOCKA_LIBS)
 
 check_PROGRAMS += tests/unit/test_layout_items
 TESTS += tests/unit/test_layout_items
-tests_unit_test_layout_items_SOURCES = tests/unit/test_layout_items.c tests/unit/unit.h \
-	tests/unit/unit_config.h
+tests_unit_test_layout_items_SOURCES = tests/unit/test_layout_items.c $(LAYOUT_TEXT_SOURCES)
 tests_unit_test_layout_items_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_layout_items_LDADD = $(CONFIG_LIBS) $(CMOCKA_LIBS)
+
 check_PROGRAMS += tests/unit/test_layout_walls
 TESTS += tests/unit/test_layout_walls
-tests_unit_test_layout_walls_SOURCES = tests/unit/test_layout_walls.c tests/unit/unit.h \
-	tests/unit/unit_config.h
+tests_unit_test_layout_walls_SOURCES = tests/unit/test_layout_walls.c $(LAYOUT_TEXT_SOURCES)
 tests_unit_test_layout_walls_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_layout_walls_LDADD = $(CONFIG_LIBS) $(CMOCKA_LIBS)
 

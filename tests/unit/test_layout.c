@@ -1,41 +1,8 @@
 /* Layouts: the shipped ones, every kind of fault with its line, save and load again, walls. */
-#include "config/layout.h"
-
 #include "base/result.h"
-#include "tests/unit/unit_config.h"
+#include "tests/unit/layout_text.h"
 
 #include <math.h>
-
-static const char base[] =
-	"name = \"room\";\n"
-	"walls = (\n"
-	"	{\n"
-	"		name = \"front\";\n"
-	"		lower_left = [-1.5, 0.0, -1.5];\n"
-	"		lower_right = [1.5, 0.0, -1.5];\n"
-	"		upper_left = [-1.5, 2.0, -1.5];\n"
-	"		pixels = [600, 400];\n"
-	"		eyes = \"mono\";\n"
-	"		nodes = ( { name = \"n1\"; address = \"127.0.0.1\"; port = 5001;\n"
-	"			part = [0.0, 0.0, 0.5, 1.0]; },\n"
-	"			{ name = \"n2\"; address = \"127.0.0.1\"; port = 5002;\n"
-	"			part = [0.5, 0.0, 1.0, 1.0]; } );\n"
-	"	},\n"
-	"	{\n"
-	"		name = \"floor\";\n"
-	"		center = [0.0, 0.0, 0.0];\n"
-	"		size = [3.0, 3.0];\n"
-	"		pitch_deg = -90.0;\n"
-	"		pixels = [600, 600];\n"
-	"		nodes = ( { address = \"127.0.0.1\"; port = 5003; } );\n"
-	"	}\n"
-	");\n"
-	"network = { master_address = \"127.0.0.1\"; master_port = 5000;\n"
-	"	mtu = 1500; };\n"
-	"rates = { frame_hz = 60.0; };\n"
-	"start = { head = [0.0, 1.7, 0.5]; };\n"
-	"trackers = ( { name = \"t1\"; kind = \"sim\"; wand = false; },\n"
-	"	{ name = \"t2\"; kind = \"replay\"; head = false; file = \"x.log\"; } );\n";
 
 /*
  * One change to the base text, and what must be said about it: on the line of
@@ -230,25 +197,15 @@ static const struct fault faults[] = {
 	  "not used: only kind = \"replay\" reads a log", 0 },
 };
 
-static int parse(const char *text, struct layout **out, struct gr_diag *diag)
-{
-	size_t len = strlen(text);
-	char *copy = (char *)unit_copy(text, len);
-	int result = layout_parse(copy, len, "t.cave", out, diag);
-
-	free(copy);
-	return result;
-}
-
 /* 1 when the fault is not named as it should be. */
 static unsigned check_fault(const struct fault *fault)
 {
-	char *text = unit_replace(base, fault->find, fault->replace);
+	char *text = unit_replace(layout_text, fault->find, fault->replace);
 	enum gr_severity severity = fault->errors ? GR_DIAG_ERROR : GR_DIAG_WARNING;
 	struct gr_diag diag = { 0 };
 	struct layout *layout = (struct layout *)&diag;
 	char start[256];
-	int result = parse(text, &layout, &diag);
+	int result = layout_text_parse(text, &layout, &diag);
 	unsigned bad = 0;
 
 	snprintf(start, sizeof start, "t.cave:%d: %s: ", unit_line(text, fault->mark), fault->key);
@@ -284,7 +241,7 @@ static void test_base(void **state)
 	vec3 corner[3];
 
 	(void)state;
-	assert_int_equal(parse(base, &layout, &diag), GR_OK);
+	assert_int_equal(layout_text_parse(layout_text, &layout, &diag), GR_OK);
 	unit_diag_print(&diag);
 	assert_int_equal(diag.count, 0);
 	assert_int_equal(layout->wall_count, 2);
@@ -322,17 +279,17 @@ static void test_many(void **state)
 	size_t len;
 
 	(void)state;
-	assert_int_equal(parse("walls = ( { pixels = [0, 0]; eyes = \"x\"; nope = 1; } );\nmtu = 3;\n",
+	assert_int_equal(layout_text_parse("walls = ( { pixels = [0, 0]; eyes = \"x\"; nope = 1; } );\nmtu = 3;\n",
 			       &layout, &diag),
 			 GR_ERR_CONFIG);
 	/* pixels, eyes, nope, mtu; missing name, nodes, center, size */
 	assert_int_equal(diag.errors, 8);
 	gr_diag_finish(&diag);
 
-	len = (size_t)sprintf(text, "%s", base);
+	len = (size_t)sprintf(text, "%s", layout_text);
 	for (int i = 0; i < 5000; i++)
 		len += (size_t)sprintf(text + len, "zz%d = 1;\n", i);
-	assert_int_equal(parse(text, &layout, &diag), GR_ERR_CONFIG);
+	assert_int_equal(layout_text_parse(text, &layout, &diag), GR_ERR_CONFIG);
 	assert_int_equal(diag.count, 65);
 	assert_non_null(strstr(diag.items[64].text, "more faults are not shown"));
 	gr_diag_finish(&diag);
@@ -362,7 +319,7 @@ static void test_too_many_nodes(void **state)
 		len += (size_t)sprintf(text + len, "); }");
 	}
 	sprintf(text + len, ");\n");
-	assert_int_equal(parse(text, &layout, &diag), GR_ERR_CONFIG);
+	assert_int_equal(layout_text_parse(text, &layout, &diag), GR_ERR_CONFIG);
 	if (diag.errors != 1 || !unit_diag_has(&diag, GR_DIAG_ERROR, "t.cave:", "more than 64 nodes")) {
 		unit_diag_print(&diag);
 		fail();
@@ -457,7 +414,7 @@ static void test_round_trip(void **state)
 	char *key;
 
 	(void)state;
-	if (parse(full, &layout, &diag) != GR_OK || diag.count) {
+	if (layout_text_parse(full, &layout, &diag) != GR_OK || diag.count) {
 		unit_diag_print(&diag);
 		fail();
 	}
@@ -507,11 +464,11 @@ static void test_hash(void **state)
 	struct layout *layout, *other;
 
 	(void)state;
-	assert_int_equal(parse(full, &layout, &diag), GR_OK);
+	assert_int_equal(layout_text_parse(full, &layout, &diag), GR_OK);
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
 		char *text = unit_replace(full, cases[i].find, cases[i].replace);
 
-		assert_int_equal(parse(text, &other, &diag), GR_OK);
+		assert_int_equal(layout_text_parse(text, &other, &diag), GR_OK);
 		if (cases[i].differs != !!memcmp(layout->hash, other->hash, 32))
 			fail_msg("\"%s\" for \"%s\"", cases[i].replace, cases[i].find);
 		layout_destroy(&other);

@@ -1,44 +1,6 @@
 /* What machines of a room compare, part by part; and which rooms may do without a key. */
-#include "config/layout.h"
-
 #include "base/result.h"
-#include "tests/unit/unit_config.h"
-
-static const char base[] =
-	"name = \"room\";\n"
-	"walls = (\n"
-	"	{\n"
-	"		name = \"front\";\n"
-	"		lower_left = [-1.5, 0.0, -1.5];\n"
-	"		lower_right = [1.5, 0.0, -1.5];\n"
-	"		upper_left = [-1.5, 2.0, -1.5];\n"
-	"		pixels = [600, 400];\n"
-	"		eyes = \"mono\";\n"
-	"		nodes = ( { name = \"n1\"; address = \"127.0.0.1\"; port = 5001;\n"
-	"			part = [0.0, 0.0, 0.5, 1.0]; },\n"
-	"			{ name = \"n2\"; address = \"127.0.0.1\"; port = 5002;\n"
-	"			part = [0.5, 0.0, 1.0, 1.0]; } );\n"
-	"	},\n"
-	"	{\n"
-	"		name = \"floor\";\n"
-	"		center = [0.0, 0.0, 0.0];\n"
-	"		size = [3.0, 3.0];\n"
-	"		pitch_deg = -90.0;\n"
-	"		pixels = [600, 600];\n"
-	"		nodes = ( { address = \"127.0.0.1\"; port = 5003; } );\n"
-	"	}\n"
-	");\n"
-	"network = { master_address = \"127.0.0.1\"; master_port = 5000;\n"
-	"	mtu = 1500; };\n"
-	"rates = { frame_hz = 60.0; };\n"
-	"start = { head = [0.0, 1.7, 0.5]; };\n"
-	"trackers = ( { name = \"t1\"; kind = \"sim\"; wand = false; },\n"
-	"	{ name = \"t2\"; kind = \"replay\"; head = false; file = \"x.log\"; } );\n";
-
-static int parse(const char *text, struct layout **out, struct gr_diag *diag)
-{
-	return layout_parse(text, strlen(text), "t.cave", out, diag);
-}
+#include "tests/unit/layout_text.h"
 
 /* Without a key all of these are good, and with one any address is. */
 static void test_unkeyed(void **state)
@@ -55,9 +17,9 @@ static void test_unkeyed(void **state)
 
 	(void)state;
 	for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
-		char *text = unit_replace(base, "mtu = 1500", good[i]);
+		char *text = unit_replace(layout_text, "mtu = 1500", good[i]);
 
-		assert_int_equal(parse(text, &layout, &diag), GR_OK);
+		assert_int_equal(layout_text_parse(text, &layout, &diag), GR_OK);
 		layout_destroy(&layout);
 		free(text);
 	}
@@ -90,13 +52,13 @@ static void test_items(void **state)
 	size_t count, i;
 
 	(void)state;
-	assert_int_equal(parse(base, &layout, &diag), GR_OK);
+	assert_int_equal(layout_text_parse(layout_text, &layout, &diag), GR_OK);
 	count = layout_items(layout, items[0], LAYOUT_ITEMS_MAX, hash);
 	assert_memory_equal(hash, layout->hash, sizeof hash);
 	for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-		char *text = unit_replace(base, cases[k].find, cases[k].replace);
+		char *text = unit_replace(layout_text, cases[k].find, cases[k].replace);
 
-		assert_int_equal(parse(text, &other, &diag), GR_OK);
+		assert_int_equal(layout_text_parse(text, &other, &diag), GR_OK);
 		assert_int_equal(layout_items(other, items[1], LAYOUT_ITEMS_MAX, hash), count);
 		for (i = 0; i < count && !memcmp(items[0][i].digest, items[1][i].digest, GR_ITEM_DIGEST); i++)
 			;

@@ -2,16 +2,11 @@
 #include "base/pose.h"
 #include "base/result.h"
 #include "config/layout_geometry.h"
-#include "tests/unit/unit_config.h"
+#include "tests/unit/layout_text.h"
 
 #include <math.h>
 
 #define DEG 0.017453292519943295
-
-static int parse(const char *text, struct layout **out, struct gr_diag *diag)
-{
-	return layout_parse(text, strlen(text), "t.cave", out, diag);
-}
 
 static double distance(const float *a, const float *b)
 {
@@ -77,7 +72,7 @@ static void test_center_sweep(void **state)
 			head[i] = c[i] + side * normal[i] * away;
 		sprintf(text, wall_text, c[0], c[1], c[2], size[0], size[1], deg[0], deg[1], deg[2],
 			head[0], head[1], head[2]);
-		result = parse(text, &layout, &diag);
+		result = layout_text_parse(text, &layout, &diag);
 		if (result != (side > 0 ? GR_OK : GR_ERR_CONFIG)) {
 			unit_diag_print(&diag);
 			fail_msg("%s", text);
@@ -143,7 +138,7 @@ static void test_skew_sweep(void **state)
 			(double)p[0][0], (double)p[0][1], (double)p[0][2], (double)p[1][0],
 			(double)p[1][1], (double)p[1][2], (double)p[2][0], (double)p[2][1],
 			(double)p[2][2], (double)p[3][0], (double)p[3][1], (double)p[3][2]);
-		result = parse(text, &layout, &diag);
+		result = layout_text_parse(text, &layout, &diag);
 		if (result != (n & 2 ? GR_OK : GR_ERR_CONFIG) || diag.errors != (n & 2 ? 0 : 1)) {
 			unit_diag_print(&diag);
 			fail_msg("%.3f degrees off: %s", off, text);
