@@ -25,17 +25,17 @@ tests_accuracy_test_surfels_SOURCES = tests/accuracy/test_surfels.c tests/unit/u
 tests_accuracy_test_surfels_CFLAGS = $(TEST_CFLAGS)
 tests_accuracy_test_surfels_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS)
 
+BAKED_ROOM_SOURCES = tests/unit/baked_room.c tests/unit/baked_room.h tests/unit/unit.h \
+	$(LATTICE_ROOM_SOURCES)
 check_PROGRAMS += tests/unit/test_surfel_file
 TESTS += tests/unit/test_surfel_file
-tests_unit_test_surfel_file_SOURCES = tests/unit/test_surfel_file.c tests/unit/unit.h \
-	$(LATTICE_ROOM_SOURCES)
+tests_unit_test_surfel_file_SOURCES = tests/unit/test_surfel_file.c $(BAKED_ROOM_SOURCES)
 tests_unit_test_surfel_file_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
 tests_unit_test_surfel_file_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS)
 
 check_PROGRAMS += tests/unit/test_surfel_store
 TESTS += tests/unit/test_surfel_store
-tests_unit_test_surfel_store_SOURCES = tests/unit/test_surfel_store.c tests/unit/unit.h \
-	$(LATTICE_ROOM_SOURCES)
+tests_unit_test_surfel_store_SOURCES = tests/unit/test_surfel_store.c $(BAKED_ROOM_SOURCES)
 tests_unit_test_surfel_store_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
 tests_unit_test_surfel_store_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS)
 

@@ -1,30 +1,22 @@
 /* Bake files: what is written comes back; whatever was changed is refused, with a reason. */
 #include "base/result.h"
 #include "renderer/gi/surfel_file.h"
-#include "tools/bench/room.h"
-#include "tests/unit/unit.h"
+#include "tests/unit/baked_room.h"
 
 #include <math.h>
 #include <sodium.h>
 #include <unistd.h>
 
-static struct scene *scene;
-static struct surfel_set *set;
+static struct baked_room room;
 static uint8_t key[SURFEL_KEY_BYTES];
 static uint8_t *whole;
 static size_t whole_len;
-static char folder[64];
-
-static const struct surfel_bake_params coarse = {
-	.spacing_m = 1, .links = 16, .taps = 2, .probes = 2, .threads = 1, .seed = 1,
-};
 
 static char *in_folder(const char *name)
 {
-	static char path[256];
+	static char path[BAKED_ROOM_PATH_BYTES];
 
-	snprintf(path, sizeof path, "%s/%s", folder, name);
-	return path;
+	return baked_room_path(&room, name, path);
 }
 
 static uint8_t *read_file(const char *path, size_t *len)
@@ -44,18 +36,11 @@ static uint8_t *read_file(const char *path, size_t *len)
 
 static int set_up(void **state)
 {
-	struct gr_diag diag = { 0 };
-
 	(void)state;
-	if (sodium_init() < 0)
+	if (baked_room_make(&room) != 0)
 		return -1;
-	scene = room_cornell();
-	snprintf(folder, sizeof folder, "/tmp/grotto-surfels-XXXXXX");
-	if (!mkdtemp(folder))
-		return -1;
-	surfel_file_key(scene, &coarse, key);
-	if (surfel_bake(&set, scene, NULL, &coarse, &diag) != GR_OK ||
-	    surfel_file_write(set, key, in_folder("a.surfels")) != GR_OK)
+	surfel_file_key(room.scene, &baked_room_coarse, key);
+	if (surfel_file_write(room.set, key, in_folder("a.surfels")) != GR_OK)
 		return -1;
 	whole = read_file(in_folder("a.surfels"), &whole_len);
 	return 0;
@@ -65,11 +50,8 @@ static int tear_down(void **state)
 {
 	(void)state;
 	unlink(in_folder("a.surfels"));
-	rmdir(folder);
 	free(whole);
-	surfel_set_destroy(&set);
-	room_free(&scene);
-	return 0;
+	return baked_room_remove(&room);
 }
 
 /* What decode says to a copy of so many bytes; the reason must hold `reason`. */
@@ -101,13 +83,13 @@ static void comes_back(void **state)
 
 	(void)state;
 	assert_int_equal(surfel_file_read(&found, key, in_folder("a.surfels"), &diag), GR_OK);
-	assert_int_equal(surfel_set_hash(found), surfel_set_hash(set));
-	assert_int_equal(found->rays, set->rays);
-	assert_true(fabs(found->seconds - set->seconds) < 1e-5);
+	assert_int_equal(surfel_set_hash(found), surfel_set_hash(room.set));
+	assert_int_equal(found->rays, room.set->rays);
+	assert_true(fabs(found->seconds - room.set->seconds) < 1e-5);
 	surfel_set_destroy(&found);
 	assert_int_equal(surfel_file_read(&found, key, in_folder("none.surfels"), &diag), GR_NOTHING);
 	assert_int_equal(diag.count, 0);
-	printf("# %zu surfels in %zu bytes\n", set->count, whole_len);
+	printf("# %zu surfels in %zu bytes\n", room.set->count, whole_len);
 }
 
 static void cut_short(void **state)
@@ -143,7 +125,7 @@ static void flipped_bit(void **state)
 static void other_version_or_scene(void **state)
 {
 	uint8_t other[SURFEL_KEY_BYTES];
-	struct surfel_bake_params params = coarse;
+	struct surfel_bake_params params = baked_room_coarse;
 
 	(void)state;
 	whole[12]++;
@@ -153,15 +135,15 @@ static void other_version_or_scene(void **state)
 	assert_int_equal(decode(whole, whole_len, "another scene"), GR_ERR_MISMATCH);
 	whole[16]--;
 	params.links++;
-	surfel_file_key(scene, &params, other);
+	surfel_file_key(room.scene, &params, other);
 	assert_memory_not_equal(other, key, sizeof key);
-	scene->hash[3]++;
-	surfel_file_key(scene, &coarse, other);
-	scene->hash[3]--;
+	room.scene->hash[3]++;
+	surfel_file_key(room.scene, &baked_room_coarse, other);
+	room.scene->hash[3]--;
 	assert_memory_not_equal(other, key, sizeof key);
-	params = coarse;
+	params = baked_room_coarse;
 	params.threads = 7; /* changes nothing */
-	surfel_file_key(scene, &params, other);
+	surfel_file_key(room.scene, &params, other);
 	assert_memory_equal(other, key, sizeof key);
 }
 
@@ -191,10 +173,10 @@ static void hostile(void **state)
 			memcpy(bytes + at, whole + at, 4);
 		}
 	/* a link to nowhere */
-	surfel_set_parts(set, parts);
+	surfel_set_parts(room.set, parts);
 	for (int i = 0; i < 5; i++)
 		links_at += parts[i].bytes;
-	const uint32_t nowhere = (uint32_t)set->count;
+	const uint32_t nowhere = (uint32_t)room.set->count;
 	memcpy(bytes + links_at, &nowhere, 4);
 	sign(bytes, whole_len);
 	assert_int_equal(decode(bytes, whole_len, "not there"), GR_ERR_FORMAT);

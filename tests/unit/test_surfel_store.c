@@ -4,14 +4,12 @@
 #include "base/result.h"
 #include "renderer/gi/surfel_file.h"
 #include "renderer/gi/surfel_store.h"
-#include "tools/bench/room.h"
-#include "tests/unit/unit.h"
+#include "tests/unit/baked_room.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <sched.h>
 #include <signal.h>
-#include <sodium.h>
 #include <sys/file.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
@@ -19,40 +17,25 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static struct scene *scene;
-static struct surfel_set *set;
-static char folder[64];
-
-static const struct surfel_bake_params coarse = {
-	.spacing_m = 1, .links = 16, .taps = 2, .probes = 2, .threads = 1, .seed = 1,
-};
+static struct baked_room room;
 
 static char *in_folder(const char *name)
 {
-	static char path[256];
+	static char path[BAKED_ROOM_PATH_BYTES];
 
-	snprintf(path, sizeof path, "%s/%s", folder, name);
-	return path;
+	return baked_room_path(&room, name, path);
 }
 
 static int set_up(void **state)
 {
-	struct gr_diag diag = { 0 };
-
 	(void)state;
-	if (sodium_init() < 0)
-		return -1;
-	scene = room_cornell();
-	snprintf(folder, sizeof folder, "/tmp/grotto-store-XXXXXX");
-	return mkdtemp(folder) && surfel_bake(&set, scene, NULL, &coarse, &diag) == GR_OK ? 0 : -1;
+	return baked_room_make(&room);
 }
 
 static int tear_down(void **state)
 {
 	(void)state;
-	surfel_set_destroy(&set);
-	room_free(&scene);
-	return rmdir(folder); /* fails where a test has left something lying about */
+	return baked_room_remove(&room);
 }
 
 static bool is_said(const struct gr_diag *diag, const char *words)
@@ -63,25 +46,35 @@ static bool is_said(const struct gr_diag *diag, const char *words)
 	return false;
 }
 
-static struct scene_file named(const char *path)
+/* The usual places for the scene of that name in the folder. */
+static void keep_for(struct surfel_store *store, const char *name)
 {
-	return (struct scene_file){ .path = (char *)(uintptr_t)path };
+	const struct scene_file file = { .path = in_folder(name) };
+
+	assert_int_equal(surfel_store_init(store, &file), GR_OK);
+}
+
+/* The store gives the room's set; how, is in *done. */
+static void get(const struct surfel_store *store, struct gr_diag *diag, struct surfel_store_done *done)
+{
+	struct surfel_set *found;
+
+	assert_int_equal(surfel_store_get(store, &found, room.scene, NULL, &baked_room_coarse, diag, done),
+			 GR_OK);
+	assert_int_equal(surfel_set_hash(found), surfel_set_hash(room.set));
+	surfel_set_destroy(&found);
 }
 
 static void bakes_once(void **state)
 {
-	char scene_path[128], kept[128];
-	struct scene_file file;
+	char kept[128];
 	struct surfel_store store;
 	struct surfel_store_done done;
 	struct gr_diag diag = { 0 };
-	struct surfel_set *found;
 
 	(void)state;
-	snprintf(scene_path, sizeof scene_path, "%s/my.scene", folder);
-	snprintf(kept, sizeof kept, "%s/my.surfels", folder);
-	file = named(scene_path);
-	assert_int_equal(surfel_store_init(&store, &file), GR_OK);
+	snprintf(kept, sizeof kept, "%s/my.surfels", room.folder);
+	keep_for(&store, "my.scene");
 	assert_string_equal(store.beside, kept);
 	for (int round = 0; round < 4; round++) {
 		bool damaged = round == 2;
@@ -92,18 +85,15 @@ static void bakes_once(void **state)
 			assert_int_equal(pwrite(fd, "x", 1, 1000), 1);
 			close(fd);
 		}
-		assert_int_equal(surfel_store_get(&store, &found, scene, NULL, &coarse, &diag, &done),
-				 GR_OK);
+		get(&store, &diag, &done);
 		assert_int_equal(done.baked, round == 0 || damaged);
 		assert_string_equal(done.path, kept);
 		assert_int_equal(diag.count, round >= 2);
-		assert_int_equal(surfel_set_hash(found), surfel_set_hash(set));
-		surfel_set_destroy(&found);
 	}
 	gr_diag_finish(&diag);
 	/* nothing else is left lying about */
 	assert_int_equal(unlink(kept), 0);
-	snprintf(kept, sizeof kept, "%s/my.surfels.lock", folder);
+	snprintf(kept, sizeof kept, "%s/my.surfels.lock", room.folder);
 	assert_int_not_equal(access(kept, F_OK), 0);
 	surfel_store_finish(&store);
 }
@@ -160,7 +150,6 @@ static void rebuilt(void **state)
 	};
 	struct surfel_store_done done;
 	struct surfel_store store;
-	struct surfel_set *found;
 
 	(void)state;
 	assert_int_equal(surfel_store_at(&store, in_folder("my.surfels")), GR_OK);
@@ -176,14 +165,11 @@ static void rebuilt(void **state)
 				faults[i].spoil(file);
 				fclose(file);
 			}
-			assert_int_equal(surfel_store_get(&store, &found, scene, NULL, &coarse, &diag,
-							  &done), GR_OK);
+			get(&store, &diag, &done);
 			assert_int_equal(done.baked, spoilt || (i == 0 && round == 0));
 			assert_int_equal(diag.warnings, spoilt);
 			if (spoilt && !is_said(&diag, faults[i].said))
 				fail_msg("'%s' does not say '%s'", diag.items[0].text, faults[i].said);
-			assert_int_equal(surfel_set_hash(found), surfel_set_hash(set));
-			surfel_set_destroy(&found);
 			gr_diag_finish(&diag);
 		}
 	}
@@ -193,28 +179,22 @@ static void rebuilt(void **state)
 
 static void goes_to_the_cache(void **state)
 {
-	char scene_path[128], cache[160];
-	struct scene_file file;
+	char cache[160];
 	struct surfel_store store;
 	struct surfel_store_done done;
 	struct gr_diag diag = { 0 };
-	struct surfel_set *found;
 
 	(void)state;
 	/* a folder that is none cannot be written, by root neither */
-	snprintf(scene_path, sizeof scene_path, "%s/file/my.scene", folder);
 	assert_int_equal(close(open(in_folder("file"), O_WRONLY | O_CREAT, 0600)), 0);
-	snprintf(cache, sizeof cache, "%s/cache/grotto", folder);
+	snprintf(cache, sizeof cache, "%s/cache/grotto", room.folder);
 	setenv("CACHE_DIRECTORY", cache, 1);
-	file = named(scene_path);
-	assert_int_equal(surfel_store_init(&store, &file), GR_OK);
+	keep_for(&store, "file/my.scene");
 	assert_int_equal(strncmp(store.cache, cache, strlen(cache)), 0);
 	for (int round = 0; round < 2; round++) {
-		assert_int_equal(surfel_store_get(&store, &found, scene, NULL, &coarse, &diag, &done),
-				 GR_OK);
+		get(&store, &diag, &done);
 		assert_int_equal(done.baked, round == 0);
 		assert_string_equal(done.path, store.cache);
-		surfel_set_destroy(&found);
 	}
 	unlink(store.cache);
 	rmdir(cache);
@@ -226,11 +206,10 @@ static void goes_to_the_cache(void **state)
 	store.cache = NULL;
 	gr_diag_finish(&diag);
 	diag = (struct gr_diag){ 0 };
-	assert_int_equal(surfel_store_get(&store, &found, scene, NULL, &coarse, &diag, &done), GR_OK);
+	get(&store, &diag, &done);
 	assert_null(done.path);
 	assert_int_equal(diag.warnings, 1);
 	assert_true(is_said(&diag, "there is no cache") && is_said(&diag, strerror(ENOTDIR)));
-	surfel_set_destroy(&found);
 	gr_diag_finish(&diag);
 	surfel_store_finish(&store);
 	unlink(in_folder("file"));
@@ -242,12 +221,11 @@ static void full_after_the_lock(void **state)
 	struct surfel_store_done done;
 	struct gr_diag diag = { 0 };
 	struct surfel_store store;
-	struct surfel_set *found;
 	char beside[128];
 
 	(void)state;
 	/* what stands where the file would be written, and is no file: root cannot write it either */
-	snprintf(beside, sizeof beside, "%s/my.surfels", folder);
+	snprintf(beside, sizeof beside, "%s/my.surfels", room.folder);
 	snprintf(beside + strlen(beside), 32, ".%ld.new", (long)getpid());
 	assert_int_equal(mkdir(beside, 0700), 0);
 	*strstr(beside, ".surfels.") = 0;
@@ -256,12 +234,9 @@ static void full_after_the_lock(void **state)
 	store.one_place = false;
 	store.cache = strdup(in_folder("cache.surfels"));
 	for (int round = 0; round < 2; round++) {
-		assert_int_equal(surfel_store_get(&store, &found, scene, NULL, &coarse, &diag, &done),
-				 GR_OK);
+		get(&store, &diag, &done);
 		assert_int_equal(done.baked, round == 0);
 		assert_string_equal(done.path, store.cache);
-		assert_int_equal(surfel_set_hash(found), surfel_set_hash(set));
-		surfel_set_destroy(&found);
 	}
 	assert_true(is_said(&diag, "my.surfels: cannot be written: "));
 	assert_int_equal(diag.warnings, 0);
@@ -301,10 +276,10 @@ static int on_a_full_disk(const char *mounted, const char *beside, const char *c
 		return __LINE__ & 63;
 	store.one_place = false;
 	store.cache = strdup(cache);
-	if (surfel_store_get(&store, &found, scene, NULL, &coarse, &diag, &done) != GR_OK)
+	if (surfel_store_get(&store, &found, room.scene, NULL, &baked_room_coarse, &diag, &done) != GR_OK)
 		return __LINE__ & 63;
 	if (!done.path || strcmp(done.path, cache) != 0 || !done.baked ||
-	    surfel_set_hash(found) != surfel_set_hash(set))
+	    surfel_set_hash(found) != surfel_set_hash(room.set))
 		return __LINE__ & 63;
 	if (!is_said(&diag, strerror(ENOSPC)) || access(cache, F_OK) != 0 || access(beside, F_OK) == 0)
 		return __LINE__ & 63;
@@ -318,9 +293,9 @@ static void disk_full(void **state)
 	pid_t child;
 
 	(void)state;
-	snprintf(mounted, sizeof mounted, "%s/full", folder);
+	snprintf(mounted, sizeof mounted, "%s/full", room.folder);
 	snprintf(beside, sizeof beside, "%s/my.surfels", mounted);
-	snprintf(cache, sizeof cache, "%s/cache.surfels", folder);
+	snprintf(cache, sizeof cache, "%s/cache.surfels", room.folder);
 	assert_int_equal(mkdir(mounted, 0700), 0);
 	fflush(stdout);
 	child = fork();
@@ -358,11 +333,11 @@ static void nothing_can_be_written(void **state)
 		store.one_place = one_place;
 		fflush(stdout);
 		setrlimit(RLIMIT_FSIZE, &none);
-		result = surfel_store_get(&store, &found, scene, NULL, &coarse, &diag, &done);
+		result = surfel_store_get(&store, &found, room.scene, NULL, &baked_room_coarse, &diag, &done);
 		setrlimit(RLIMIT_FSIZE, &before);
 		assert_int_equal(result, GR_OK);
 		assert_true(done.baked && !done.path);
-		assert_int_equal(surfel_set_hash(found), surfel_set_hash(set));
+		assert_int_equal(surfel_set_hash(found), surfel_set_hash(room.set));
 		assert_int_equal(diag.warnings, 1);
 		assert_true(is_said(&diag, strerror(EFBIG)));
 		assert_true(is_said(&diag, "cache") == !one_place);
@@ -384,7 +359,7 @@ static void one_place_or_none(void **state)
 
 	(void)state;
 	assert_int_equal(surfel_store_at(&store, in_folder("nowhere/my.surfels")), GR_OK);
-	assert_int_equal(surfel_store_get(&store, &found, scene, NULL, &coarse, &diag, &done),
+	assert_int_equal(surfel_store_get(&store, &found, room.scene, NULL, &baked_room_coarse, &diag, &done),
 			 GR_ERR_IO);
 	assert_null(found);
 	assert_int_equal(diag.count, 1);
@@ -397,7 +372,7 @@ static void one_place_or_none(void **state)
 /* Four processes at once: one bakes, three wait and read. */
 static void four_at_once(void **state)
 {
-	struct surfel_bake_params params = coarse;
+	struct surfel_bake_params params = baked_room_coarse;
 	char path[128];
 	int baked = 0, waited = 0;
 	pid_t children[4];
@@ -405,7 +380,7 @@ static void four_at_once(void **state)
 	(void)state;
 	params.links = 1024;
 	params.spacing_m = 0.3f;
-	snprintf(path, sizeof path, "%s/four.surfels", folder);
+	snprintf(path, sizeof path, "%s/four.surfels", room.folder);
 	for (int i = 0; i < 4; i++) {
 		children[i] = fork();
 		if (children[i] == 0) {
@@ -415,7 +390,7 @@ static void four_at_once(void **state)
 			struct gr_diag diag = { 0 };
 
 			if (surfel_store_at(&store, path) != GR_OK ||
-			    surfel_store_get(&store, &found, scene, NULL, &params, &diag, &done) !=
+			    surfel_store_get(&store, &found, room.scene, NULL, &params, &diag, &done) !=
 				    GR_OK)
 				_exit(99);
 			_exit((done.baked ? 1 : 0) + (done.waited_s > 0.02 ? 2 : 0));
@@ -441,14 +416,13 @@ static void wait_is_bounded(void **state)
 	struct surfel_store_done done;
 	struct gr_diag diag = { 0 };
 	struct surfel_store store;
-	struct surfel_set *found;
 	char path[128];
 	int pipe_fd[2];
 	pid_t child;
 	char byte;
 
 	(void)state;
-	snprintf(path, sizeof path, "%s/stuck.surfels", folder);
+	snprintf(path, sizeof path, "%s/stuck.surfels", room.folder);
 	assert_int_equal(pipe(pipe_fd), 0);
 	child = fork();
 	if (child == 0) {
@@ -467,21 +441,18 @@ static void wait_is_bounded(void **state)
 	assert_int_equal(read(pipe_fd[0], &byte, 1), 1);
 	assert_int_equal(surfel_store_at(&store, path), GR_OK);
 	store.wait_s = 1;
-	assert_int_equal(surfel_store_get(&store, &found, scene, NULL, &coarse, &diag, &done), GR_OK);
+	get(&store, &diag, &done);
 	assert_true(done.baked && !done.path && done.waited_s >= 1 && done.waited_s < 5);
 	gethostname(host, sizeof host - 1);
 	snprintf(holder, sizeof holder, "process %ld on %s has been baking", (long)child, host);
 	assert_true(is_said(&diag, holder));
-	surfel_set_destroy(&found);
 	store.cache = strdup(in_folder("cache.surfels"));
 	store.one_place = false;
 	for (int round = 0; round < 2; round++) {
-		assert_int_equal(surfel_store_get(&store, &found, scene, NULL, &coarse, &diag, &done),
-				 GR_OK);
+		get(&store, &diag, &done);
 		/* the second time nobody is waited for */
 		assert_true(done.baked == (round == 0) && (done.waited_s > 0.9) == (round == 0));
 		assert_string_equal(done.path, store.cache);
-		surfel_set_destroy(&found);
 	}
 	unlink(store.cache);
 	surfel_store_finish(&store);
