@@ -31,6 +31,7 @@ dist_check_SCRIPTS += tests/command/bake.sh tests/command/check.sh tests/command
 	tests/command/report.sh
 TESTS += tests/command/bake.sh tests/command/check.sh tests/command/demo.sh tests/command/report.sh
 EXTRA_DIST += \
+	tests/command/lib.sh \
 	tests/data/key-missing.cave \
 	tests/data/picture.png \
 	tests/data/bad/bad-lamp-kind.scene \
@@ -66,4 +67,4 @@ dist_check_SCRIPTS += tests/loopback/demo.sh tests/loopback/netns.sh tests/loopb
 	tests/loopback/render.sh tests/loopback/share.sh tests/loopback/window.sh
 TESTS += tests/loopback/demo.sh tests/loopback/netns.sh tests/loopback/way.sh \
 	tests/loopback/render.sh tests/loopback/share.sh tests/loopback/window.sh
-EXTRA_DIST += tests/loopback/lib.sh tests/data/halves.cave tests/data/loop.scene tests/data/shared.scene
+EXTRA_DIST += tests/loopback/lib.sh tests/loopback/net.sh tests/data/halves.cave tests/data/loop.scene tests/data/shared.scene

@@ -1,23 +1,12 @@
 #!/bin/sh
 # grotto check: the shipped files are right, every faulty one is refused with
 # exit status 2 and says what its "// expect:" lines say.
-set -u
-: "${srcdir:=.}" "${builddir:=.}"
-grotto=$builddir/tools/grotto
-failed=0
-[ -x "$grotto" ] || { echo "FAIL: $grotto is not built"; exit 1; }
-fail() {
-	echo "FAIL: $*"
-	failed=1
-}
+. "${srcdir:-.}/tests/command/lib.sh"
 
 # The key that a layout for several machines names is not on this one: give it one.
-folder=check.work.$$
-rm -rf "$folder" && mkdir "$folder" || exit 1
-trap 'rm -rf "$folder"' EXIT
-"$grotto" key "$folder/key" >/dev/null || fail "no key for the shipped layouts"
+"$grotto" key "$work/key" >/dev/null || fail "no key for the shipped layouts"
 for file in "$srcdir"/layouts/*.cave; do
-	copy=$folder/$(basename "$file")
+	copy=$work/$(basename "$file")
 	sed 's,key_file = "[^"]*",key_file = "key",' "$file" >"$copy"
 	said=$("$grotto" check "$copy" 2>&1) || fail "$file: exit $?: $said"
 	case $said in *"warning:"*) fail "$file: $said" ;; esac
@@ -32,13 +21,13 @@ said=$("$grotto" check "$file" 2>&1) || fail "an absent key: exit $?: $said"
 for words in "warning: $file:21: network.key_file: /nowhere/cluster.key" "grotto key"; do
 	case $said in *"$words"*) ;; *) fail "an absent key: '$words' is not in: $said" ;; esac
 done
-sed 's,/nowhere/cluster.key,key,' "$file" >"$folder/keyed.cave"
-said=$("$grotto" check "$folder/keyed.cave" 2>&1) || fail "a key beside: exit $?: $said"
-chmod 644 "$folder/key"
-said=$("$grotto" check "$folder/keyed.cave" 2>&1)
+sed 's,/nowhere/cluster.key,key,' "$file" >"$work/keyed.cave"
+said=$("$grotto" check "$work/keyed.cave" 2>&1) || fail "a key beside: exit $?: $said"
+chmod 644 "$work/key"
+said=$("$grotto" check "$work/keyed.cave" 2>&1)
 [ $? -eq 2 ] || fail "a key that others may read: $said"
-rm -f "$folder/key" && echo "no key" >"$folder/key" && chmod 600 "$folder/key"
-said=$("$grotto" check "$folder/keyed.cave" 2>&1)
+rm -f "$work/key" && echo "no key" >"$work/key" && chmod 600 "$work/key"
+said=$("$grotto" check "$work/keyed.cave" 2>&1)
 [ $? -eq 2 ] || fail "a key that is none: $said"
 
 count=0
@@ -51,14 +40,13 @@ for file in "$srcdir"/tests/data/bad/*.cave "$srcdir"/tests/data/bad/*.scene \
 	*"$file"*) ;;
 	*) fail "$file: is not named in: $said" ;;
 	esac
-	sed -n 's,^// expect: ,,p' "$file" >"check.expect.$$"
+	sed -n 's,^// expect: ,,p' "$file" >"$work/expect"
 	while IFS= read -r expected; do
 		case $said in
 		*"$expected"*) ;;
 		*) fail "$file: '$expected' is not in: $said" ;;
 		esac
-	done <"check.expect.$$"
-	rm -f "check.expect.$$"
+	done <"$work/expect"
 	count=$((count + 1))
 done
 [ $count -ge 19 ] || fail "only $count faulty files in $srcdir/tests/data/bad"
@@ -80,15 +68,13 @@ done
 "$grotto" check --nonsense 2>&1 | grep -q "no option --nonsense" || fail "unknown option"
 
 # A key is made once and never overwritten.
-key=check.key.$$
-rm -f "$key"
+key=$work/made.key
 "$grotto" key "$key" >/dev/null || fail "no key was made"
 [ "$(stat -c %a "$key")" = 640 ] || fail "the key's mode is $(stat -c %a "$key")"
 [ "$(wc -c <"$key")" -eq 65 ] || fail "the key has $(wc -c <"$key") bytes"
 before=$(cat "$key")
 "$grotto" key "$key" >/dev/null 2>&1 && fail "an existing key was not refused"
 [ "$(cat "$key")" = "$before" ] || fail "an existing key was overwritten"
-rm -f "$key"
 
 [ $failed -eq 0 ] && echo "ok: $count faulty files refused"
 exit $failed

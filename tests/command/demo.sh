@@ -1,20 +1,11 @@
 #!/bin/sh
 # grotto demo judges its processes: with test doubles of the daemons that die,
 # crash, hang, miss frames or hold another state. No GL is needed.
-set -u
-: "${srcdir:=.}" "${builddir:=.}"
+. "${srcdir:-.}/tests/command/lib.sh"
 srcdir=$(cd "$srcdir" && pwd)
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-failed=0
-fail() {
-	echo "FAIL: $*"
-	failed=1
-}
-[ -x "$builddir/tools/grotto" ] || { echo "FAIL: tools/grotto is not built"; exit 1; }
 
 # The command looks for daemons beside itself first.
-cp "$builddir/tools/grotto" "$work/grotto"
+cp "$grotto" "$work/grotto"
 cp "$srcdir/tests/command/double.sh" "$work/grotto-master"
 cp "$srcdir/tests/command/double.sh" "$work/grotto-node"
 chmod +x "$work"/grotto-*
@@ -53,7 +44,7 @@ for wall in front left right floor; do
 	[ -s "$work/out/node-$wall.log" ] || fail "no log of $wall"
 done
 [ -s "$work/out/room.png" ] || fail "no room.png"
-"$builddir/tools/grotto" check "$work/out/layout.cave" >/dev/null ||
+"$grotto" check "$work/out/layout.cave" >/dev/null ||
 	fail "the planned layout is refused"
 [ -z "$(find /tmp -maxdepth 1 -name 'grotto-??????' -newer "$work/a.scene" -user "$(id -u)" -empty 2>/dev/null)" ] ||
 	fail "the socket's folder is left behind"

@@ -4,18 +4,7 @@
 # iproute2, nftables; left out where there are none) a small MTU, a firewall, a
 # machine that is not there, a group.
 . "${srcdir:-.}/tests/loopback/lib.sh"
-id=gd$$
-listener=
-cleanup() {
-	[ -z "$listener" ] || kill -KILL "$listener" 2>/dev/null
-	wait 2>/dev/null
-	for ns in hub m n1; do
-		ip netns del "$id-$ns" 2>/dev/null
-	done
-	rm -rf "$work"
-}
-trap cleanup EXIT
-trap 'exit 1' INT TERM HUP
+. "${srcdir:-.}/tests/loopback/net.sh"
 inside= # "ip netns exec NAMESPACE" for the doctor
 
 # wall NAME NODE ADDRESS PORT: one wall of the room
@@ -54,7 +43,7 @@ finds() {
 listen() {
 	: >"$work/listen.log"
 	$inside "$grotto" doctor --layout "$work/room.cave" --listen 60 "$@" >"$work/listen.log" 2>&1 &
-	listener=$!
+	started=$!
 	tries=100
 	until grep -q answering "$work/listen.log"; do
 		tries=$((tries - 1))
@@ -63,9 +52,9 @@ listen() {
 	done
 }
 stop_listening() {
-	kill "$listener"
-	wait "$listener" 2>/dev/null
-	listener=
+	kill "$started"
+	wait "$started" 2>/dev/null
+	started=
 }
 
 # A healthy room on loopback, and what stops the command itself.
@@ -109,26 +98,11 @@ finds key fail "has mode 604"
 echo "ok: loopback"
 [ $failed -eq 0 ] || exit 1
 
-command -v ip >/dev/null && command -v nft >/dev/null && ip netns add "$id-hub" 2>/dev/null || {
-	echo "left out: network namespaces (iproute2, nftables, CAP_NET_ADMIN)"
-	exit 0
-}
-make_net() {
-	ip -n "$id-hub" link add br0 type bridge mcast_snooping 0 || return 1
-	ip -n "$id-hub" link set br0 up
-	address=1
-	for ns in m n1; do
-		ip netns add "$id-$ns" || return 1
-		ip -n "$id-$ns" link set lo up
-		ip -n "$id-$ns" link add eth0 type veth peer name "p$ns" netns "$id-hub" || return 1
-		ip -n "$id-hub" link set "p$ns" master br0 up || return 1
-		ip -n "$id-$ns" address add "10.77.1.$address/24" dev eth0
-		ip -n "$id-$ns" link set eth0 up
-		ip -n "$id-$ns" route add default dev eth0
-		address=$((address + 1))
-	done
-}
-make_net 2>"$work/said" || { echo "left out: no bridge of namespaces: $(cat "$work/said")"; exit 0; }
+can_net && make_net 10.77.1 m n1 || { echo "left out: network namespaces: $why"; exit 0; }
+ip -n "$id-hub" link set br0 type bridge mcast_snooping 0 || fail "the bridge still snoops"
+for ns in $machines; do
+	ip -n "$id-$ns" route add default dev eth0
+done
 chmod 600 "$work/key"
 layout 10.77.1.1 10.77.1.2 10.77.1.3 "key_file = \"$work/key\"; cast = \"multicast\"; group = \"239.192.71.1\"; interface = \"eth0\";" \
 	>"$work/room.cave"

@@ -1,10 +1,6 @@
 #!/bin/sh
 # A daemon whose --report cannot be written does not start: exit status 2.
-set -u
-: "${srcdir:=.}" "${builddir:=.}"
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-failed=0
+. "${srcdir:-.}/tests/command/lib.sh"
 for daemon in master "node --node front"; do
 	for report in "$work/none/report.json" "$work" /proc/report.json; do
 		# shellcheck disable=SC2086
@@ -13,13 +9,10 @@ for daemon in master "node --node front"; do
 		status=$?
 		case $status:$said in
 		2:*"$report: cannot be written"*) ;;
-		*)
-			echo "FAIL: $daemon --report $report: exit $status: $said"
-			failed=1
-			;;
+		*) fail "$daemon --report $report: exit $status: $said" ;;
 		esac
 	done
 done
-[ -z "$(ls "$work")" ] || { echo "FAIL: left behind: $(ls "$work")"; failed=1; }
+[ -z "$(ls "$work")" ] || fail "left behind: $(ls "$work")"
 [ $failed -eq 0 ] && echo "ok"
 exit $failed

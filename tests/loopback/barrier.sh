@@ -2,7 +2,6 @@
 # grotto bench barrier: in namespaces where that is allowed, else over loopback, nodes swap
 # when told in one run and at a time in the next; what is wrong in its words is said.
 . "${srcdir:-.}/tests/loopback/lib.sh"
-trap 'rm -rf "$work"' EXIT
 "$grotto" bench barrier --runs 1 --frames 120 >"$work/said" 2>"$work/words" ||
 	fail "it ended with $?: $(cat "$work/words")"
 grep -q 'told .*; 120 frames, 0 with a time' "$work/said" || fail "not told: $(cat "$work/said")"

@@ -2,7 +2,6 @@
 # A whole cave on loopback: master and four nodes, twice, with the same result;
 # then half-wall nodes in stereo and an eye per node.
 . "${srcdir:-.}/tests/loopback/lib.sh"
-trap 'rm -rf "$work"' EXIT
 need_gl
 
 # demo OUT FRAMES [OPTION...]

@@ -1,22 +1,7 @@
-# Read by the loopback tests: where things are, and who can run them here.
-set -u
-: "${srcdir:=.}" "${builddir:=.}"
-grotto=$builddir/tools/grotto
+# Sourced by the loopback tests: what they need, and who can run them here.
+. "${srcdir:-.}/tests/command/lib.sh"
 picture=$builddir/tests/loopback/picture
-failed=0
-
-fail() {
-	echo "FAIL: $*"
-	failed=1
-}
-skip() {
-	echo "SKIP: $*"
-	exit 77
-}
-[ -x "$grotto" ] || { echo "FAIL: $grotto is not built"; exit 1; }
 command -v jq >/dev/null || skip "jq is not installed"
-
-work=$(mktemp -d) || exit 1
 
 # No GL 4.5, no loopback cave: one small still says so.
 need_gl() {

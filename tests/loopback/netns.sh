@@ -6,48 +6,18 @@
 # share out ends with the same bits on all, whatever was lost of it. Needs CAP_NET_ADMIN,
 # iproute2 and nftables; touches nothing but its own namespaces.
 . "${srcdir:-.}/tests/loopback/lib.sh"
-id=gr$$
-started=
-
-cleanup() {
-	for pid in $started; do
-		kill -KILL "$pid" 2>/dev/null
-	done
-	wait 2>/dev/null
-	for ns in hub m 1 2 3 4; do
-		ip netns del "$id-$ns" 2>/dev/null
-	done
-	rm -rf "$work"
-}
-trap cleanup EXIT
-trap 'exit 1' INT TERM HUP
-
-command -v ip >/dev/null || skip "ip (iproute2) is not installed"
-command -v nft >/dev/null || skip "nft (nftables) is not installed"
-ip netns add "$id-hub" 2>"$work/said" || skip "no network namespaces: $(cat "$work/said")"
+. "${srcdir:-.}/tests/loopback/net.sh"
+can_net || skip "$why"
 need_gl
-
-make_net() {
-	ip -n "$id-hub" link add br0 type bridge || return 1
-	ip -n "$id-hub" link set br0 up
-	address=1
-	for ns in m 1 2 3 4; do
-		ip netns add "$id-$ns" || return 1
-		ip -n "$id-$ns" link set lo up
-		ip -n "$id-$ns" link add eth0 type veth peer name "p$ns" netns "$id-hub" || return 1
-		ip -n "$id-hub" link set "p$ns" master br0 up || return 1
-		ip -n "$id-$ns" address add "10.77.0.$address/24" dev eth0
-		# As on a wire: what the kernel cuts up is cut before it can be lost.
-		ip -n "$id-$ns" link set eth0 gso_max_segs 1
-		ip -n "$id-$ns" link set eth0 up
-		address=$((address + 1))
-	done
-}
-make_net 2>"$work/said" || skip "no bridge of namespaces: $(cat "$work/said")"
+make_net 10.77.0 m 1 2 3 4 || skip "$why"
+for ns in $machines; do
+	# As on a wire: what the kernel cuts up is cut before it can be lost.
+	ip -n "$id-$ns" link set eth0 gso_max_segs 1
+done
 
 # lose PERCENT: of the UDP datagrams that arrive anywhere
 lose() {
-	for ns in m 1 2 3 4; do
+	for ns in $machines; do
 		ip netns exec "$id-$ns" nft -f - <<-EOF || return 1
 			table netdev loss {
 				chain in {
@@ -59,7 +29,7 @@ lose() {
 	done
 }
 lost() {
-	for ns in m 1 2 3 4; do
+	for ns in $machines; do
 		ip netns exec "$id-$ns" nft list table netdev loss
 	done | sed -n 's/.*counter packets \([0-9]*\).*/\1/p' | awk '{ n += $1 } END { print n + 0 }'
 }
@@ -88,42 +58,10 @@ rates = { evict_frames = 3; };
 trackers = ( { name = "visitor"; kind = "sim"; sim = { walk_radius_m = 0.5; }; } );
 EOF
 
-scene=$srcdir/tests/data/loop.scene
-# start NS NAME PROGRAM OPTION...: in the background; its pid is left in $pid
-start() {
-	ns=$1 name=$2 program=$3
-	shift 3
-	ip netns exec "$id-$ns" "$builddir/daemon/$program" --layout "$work/a.cave" \
-		--scene "$scene" --report "$work/$name.json" "$@" \
-		>"$work/$name.log" 2>&1 &
-	pid=$!
-	started="$started $pid"
-}
-# await SECONDS WHAT COMMAND...: until the command is true
-await() {
-	tries=$(($1 * 10)) what=$2
-	shift 2
-	while ! "$@" >/dev/null 2>&1; do
-		tries=$((tries - 1))
-		if [ $tries -le 0 ]; then
-			status | jq -c '{frame, joined, evicted, late, nodes: [.nodes[] | {name, state}]}'
-			fail "waited in vain for: $what"
-			tail -n 5 "$work"/*.log
-			exit 1
-		fi
-		sleep 0.1
-	done
-}
 gone() {
 	for one in "$@"; do
 		[ ! -d "/proc/$one" ] || grep -q '^State:.Z' "/proc/$one/status" || return 1
 	done
-}
-status() {
-	"$grotto" status --socket "$work/control" --json
-}
-holds() { # JQ-CONDITION: of the master's status
-	said=$(status) && printf '%s' "$said" | jq -e "$1"
 }
 cat_reports() {
 	for n in n1 n2 n3 n4; do
@@ -151,7 +89,7 @@ jq -e ".frames == $frames and .late == 0 and .evicted == 0 and .wire.repairs > 0
 	"$work/master.json" >/dev/null || fail "master under loss: $(jq -c . "$work/master.json")"
 [ "$(lost)" -gt 0 ] || fail "nothing was lost"
 echo "5 % loss: $(lost) datagrams lost, $(jq -c '{frames, repairs: .wire.repairs, commit_to_last_swap_us}' "$work/master.json")"
-for ns in m 1 2 3 4; do
+for ns in $machines; do
 	ip netns exec "$id-$ns" nft delete table netdev loss
 done
 

@@ -1,7 +1,6 @@
 #!/bin/sh
 # grotto render: stills without daemons, and what it refuses.
 . "${srcdir:-.}/tests/loopback/lib.sh"
-trap 'rm -rf "$work"' EXIT
 need_gl
 scene=$srcdir/tests/data/loop.scene
 

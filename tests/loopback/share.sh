@@ -2,7 +2,6 @@
 # A cave whose nodes share out the light: every slice arrives in time, all nodes end
 # with the same bits, twice the same ones; and what it spares a node.
 . "${srcdir:-.}/tests/loopback/lib.sh"
-trap 'rm -rf "$work"' EXIT
 need_gl
 frames=40
 

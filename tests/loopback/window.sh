@@ -1,7 +1,6 @@
 #!/bin/sh
 # The walls in GLFW windows, on a virtual X server.
 . "${srcdir:-.}/tests/loopback/lib.sh"
-trap 'rm -rf "$work"' EXIT
 command -v xvfb-run >/dev/null || skip "xvfb-run is not installed"
 command -v xauth >/dev/null || skip "xauth is not installed"
 need_gl
