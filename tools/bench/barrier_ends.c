@@ -2,16 +2,12 @@
 #include "tools/bench/barrier.h"
 
 #include "base/clock.h"
-#include "base/result.h"
 #include "daemon/frame_stats.h"
 #include "daemon/loop.h"
-#include "daemon/socket.h"
 #include "daemon/swap_wait.h"
-#include "protocol/node.h"
+#include "tools/bench/cluster_ends.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #define RECEIVE_MOST 64
 /* A picture takes so long: nodes are ready at different times, and asleep before SWAP comes. */
@@ -24,23 +20,14 @@ static int64_t now(void)
 }
 
 struct master_end {
+	struct cluster_master end; /* first: the protocol's ctx */
 	struct barrier_room *room;
 	struct loop *loop;
-	struct net *net;
-	struct fdp_master *fdp;
-	struct param_state *state;
 	struct frame_stats stats;
 	uint64_t frame;
 	int64_t next_ns;
 	int frame_timer, tick_timer;
 };
-
-static void master_send(void *ctx, int to, const uint8_t *bytes, size_t len)
-{
-	struct master_end *m = ctx;
-
-	net_send(m->net, to, bytes, len);
-}
 
 static void master_event(void *ctx, const struct fdp_master_event *event)
 {
@@ -56,18 +43,18 @@ static void master_event(void *ctx, const struct fdp_master_event *event)
 
 static void master_begin(struct master_end *m)
 {
-	const uint64_t all = (UINT64_C(1) << m->room->node_count) - 1, frame = m->frame + 1;
+	const uint64_t all = (UINT64_C(1) << m->room->cluster.node_count) - 1, frame = m->frame + 1;
 	const float head[3] = { (float)sin((double)frame), 1.7f, 0 };
-	const uint64_t time = frame * (uint64_t)m->room->period_ns;
+	const uint64_t time = frame * (uint64_t)m->room->cluster.period_ns;
 
 	if (frame == m->room->warm + 1)
 		m->stats = (struct frame_stats){ .begun = 0 };
-	param_set(m->state, PARAM_FRAME_TIME, &time, frame);
-	param_set(m->state, PARAM_HEAD_POSITION, head, frame);
+	param_set(m->end.state, PARAM_FRAME_TIME, &time, frame);
+	param_set(m->end.state, PARAM_HEAD_POSITION, head, frame);
 	m->frame = frame;
 	frame_stats_begin(&m->stats, frame, all, now());
-	fdp_master_begin(m->fdp, m->state, frame, now());
-	m->next_ns += m->room->period_ns;
+	fdp_master_begin(m->end.fdp, m->end.state, frame, now());
+	m->next_ns += m->room->cluster.period_ns;
 	if (m->next_ns < now())
 		m->next_ns = now();
 }
@@ -77,18 +64,18 @@ static void master_advance(struct master_end *m)
 	const unsigned count = m->room->warm + m->room->frames;
 	int64_t frame_ns = LOOP_NEVER;
 
-	net_flush(m->net);
-	if (fdp_master_idle(m->fdp) && fdp_master_present(m->fdp) == m->room->node_count) {
+	net_flush(m->end.net);
+	if (fdp_master_idle(m->end.fdp) && fdp_master_present(m->end.fdp) == m->room->cluster.node_count) {
 		if (m->frame >= count && frame_stats_settled(&m->stats, m->frame))
 			loop_stop(m->loop);
 		else if (m->frame < count && now() >= m->next_ns)
 			master_begin(m);
 		else
 			frame_ns = m->next_ns;
-		net_flush(m->net);
+		net_flush(m->end.net);
 	}
 	loop_timer_set(m->loop, m->frame_timer, frame_ns);
-	loop_timer_set(m->loop, m->tick_timer, fdp_master_next(m->fdp));
+	loop_timer_set(m->loop, m->tick_timer, fdp_master_next(m->end.fdp));
 }
 
 static void master_datagram(void *ctx, const uint8_t *bytes, size_t len,
@@ -99,11 +86,11 @@ static void master_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	int node;
 
 	(void)from;
-	fdp_master_arrived(m->fdp, arrived_ns);
-	node = fdp_master_receive(m->fdp, bytes, len, now(), NULL);
+	fdp_master_arrived(m->end.fdp, arrived_ns);
+	node = fdp_master_receive(m->end.fdp, bytes, len, now(), NULL);
 	if (node < 0)
 		return;
-	fdp_master_peer(m->fdp, (size_t)node, &peer);
+	fdp_master_peer(m->end.fdp, (size_t)node, &peer);
 	if (peer.swapped_frame)
 		frame_stats_swapped(&m->stats, (unsigned)node, peer.swapped_frame, peer.swap_ns, now());
 }
@@ -114,8 +101,8 @@ static void master_readable(void *ctx, uint32_t events)
 	int fds[2];
 
 	(void)events;
-	net_fds(m->net, fds);
-	net_receive(m->net, fds[0], RECEIVE_MOST, master_datagram, m);
+	net_fds(m->end.net, fds);
+	net_receive(m->end.net, fds[0], RECEIVE_MOST, master_datagram, m);
 	master_advance(m);
 }
 
@@ -123,30 +110,20 @@ static void master_timer(void *ctx, int64_t now_ns)
 {
 	struct master_end *m = ctx;
 
-	fdp_master_tick(m->fdp, now_ns);
+	fdp_master_tick(m->end.fdp, now_ns);
 	master_advance(m);
 }
 
 static bool master_open(struct master_end *m)
 {
-	struct barrier_room *room = m->room;
-	const char *names[BARRIER_NODES_MOST];
-	const struct fdp_master_ops ops = { .send = master_send, .event = master_event, .ctx = m };
 	const struct fdp_master_params params = {
-		.session = room->session, .node_names = names, .node_count = room->node_count,
-		.datagram_max = net_datagram_max(&room->layout.network),
-		.deadline_ns = GR_NS_PER_S, .evict_frames = 3, .swap = room->swap,
-		.swap_lead_most_ns = room->period_ns / 4,
-		.multicast = room->layout.network.cast == LAYOUT_MULTICAST,
+		.deadline_ns = GR_NS_PER_S, .evict_frames = 3, .swap = m->room->swap,
 	};
 	int fds[2];
 
-	for (unsigned i = 0; i < room->node_count; i++)
-		names[i] = room->nodes[i].name;
-	if (loop_create(&m->loop) < 0 || net_open_master(&m->net, &room->layout) < 0 ||
-	    param_state_create(&m->state) < 0 || fdp_master_create(&m->fdp, &params, &ops) < 0)
+	if (loop_create(&m->loop) < 0 || !cluster_master_open(&m->end, params, master_event))
 		return false;
-	net_fds(m->net, fds);
+	net_fds(m->end.net, fds);
 	m->frame_timer = loop_timer_create(m->loop, master_timer, m);
 	m->tick_timer = loop_timer_create(m->loop, master_timer, m);
 	return m->tick_timer >= 0 && loop_add(m->loop, fds[0], EPOLLIN, master_readable, m) >= 0;
@@ -158,53 +135,42 @@ void barrier_master(struct barrier_room *room)
 	struct master_end *m = &end;
 	struct fdp_clock_estimate clock;
 
-	*m = (struct master_end){ .room = room, .next_ns = now() };
+	*m = (struct master_end){ .end.cluster = &room->cluster, .room = room, .next_ns = now() };
 	if (!master_open(m)) {
-		atomic_store(&room->failed, 1);
+		atomic_store(&room->cluster.failed, true);
 	} else {
 		master_timer(m, now());
-		while (!loop_stopped(m->loop) && !atomic_load(&room->failed))
+		while (!loop_stopped(m->loop) && !atomic_load(&room->cluster.failed))
 			if (loop_once(m->loop, 1000) < 0)
-				atomic_store(&room->failed, 1);
+				atomic_store(&room->cluster.failed, true);
 		room->seen_p50_us = histogram_percentile(&m->stats.skew, 0.5);
 		room->seen_p99_us = histogram_percentile(&m->stats.skew, 0.99);
-		for (unsigned i = 0; i < room->node_count; i++) {
-			fdp_master_clock(m->fdp, i, now(), &clock);
+		for (unsigned i = 0; i < room->cluster.node_count; i++) {
+			fdp_master_clock(m->end.fdp, i, now(), &clock);
 			room->clock_off_us[i] = (double)clock.offset_ns * 1e-3;
 		}
 	}
-	atomic_store(&room->over, true);
-	fdp_master_destroy(&m->fdp);
-	param_state_destroy(&m->state);
-	net_close(&m->net);
+	atomic_store(&room->cluster.over, true);
+	cluster_master_close(&m->end);
 	loop_destroy(&m->loop);
 }
 
 struct node_end {
+	struct cluster_node end; /* first: the protocol's ctx */
 	struct barrier_room *room;
-	unsigned index;
 	struct loop *loop;
-	struct net *net;
-	struct fdp_node *fdp;
 	uint64_t drawing, told; /* frames; 0: none */
 	int64_t at_ns;
 	uint32_t random;
 	int tick_timer, draw_timer;
 };
 
-static void node_send(void *ctx, const uint8_t *bytes, size_t len)
-{
-	struct node_end *n = ctx;
-
-	net_send(n->net, 0, bytes, len);
-}
-
 static void node_note(const struct node_end *n, int64_t *times, uint64_t frame, int64_t at_ns)
 {
 	const struct barrier_room *room = n->room;
 
 	if (frame > room->warm && frame <= (uint64_t)room->warm + room->frames)
-		times[n->index * room->frames + (frame - room->warm - 1)] = at_ns;
+		times[n->end.index * room->frames + (frame - room->warm - 1)] = at_ns;
 }
 
 static void node_event(void *ctx, const struct fdp_node_event *event)
@@ -230,15 +196,15 @@ static void node_serve(struct node_end *n)
 	if (n->told) {
 		/* Leaving the barrier is all there is to see. */
 		const int64_t swap_ns = n->at_ns > 0 ?
-			swap_wait(n->at_ns, n->room->layout.swap.busy_poll_ns) : -n->at_ns;
+			swap_wait(n->at_ns, n->room->cluster.layout.swap.busy_poll_ns) : -n->at_ns;
 
 		node_note(n, n->room->swap_ns, n->told, swap_ns);
 		swap_give_way();
-		fdp_node_swapped(n->fdp, n->told, swap_ns, now());
+		fdp_node_swapped(n->end.fdp, n->told, swap_ns, now());
 		n->told = 0;
 	}
-	net_flush(n->net);
-	loop_timer_set(n->loop, n->tick_timer, fdp_node_next(n->fdp));
+	net_flush(n->end.net);
+	loop_timer_set(n->loop, n->tick_timer, fdp_node_next(n->end.fdp));
 }
 
 static void node_datagram(void *ctx, const uint8_t *bytes, size_t len,
@@ -247,18 +213,18 @@ static void node_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	struct node_end *n = ctx;
 
 	(void)from;
-	fdp_node_arrived(n->fdp, arrived_ns);
-	fdp_node_receive(n->fdp, bytes, len, now());
+	fdp_node_arrived(n->end.fdp, arrived_ns);
+	fdp_node_receive(n->end.fdp, bytes, len, now());
 }
 
 static void node_readable(void *ctx, uint32_t events)
 {
 	struct node_end *n = ctx;
-	int fds[2], count = net_fds(n->net, fds);
+	int fds[2], count = net_fds(n->end.net, fds);
 
 	(void)events;
 	for (int i = 0; i < count; i++)
-		net_receive(n->net, fds[i], RECEIVE_MOST, node_datagram, n);
+		net_receive(n->end.net, fds[i], RECEIVE_MOST, node_datagram, n);
 	node_serve(n);
 }
 
@@ -266,7 +232,7 @@ static void node_tick(void *ctx, int64_t now_ns)
 {
 	struct node_end *n = ctx;
 
-	fdp_node_tick(n->fdp, now_ns);
+	fdp_node_tick(n->end.fdp, now_ns);
 	node_serve(n);
 }
 
@@ -275,24 +241,17 @@ static void node_drawn(void *ctx, int64_t now_ns)
 	struct node_end *n = ctx;
 
 	node_note(n, n->room->ready_ns, n->drawing, now_ns);
-	fdp_node_ready(n->fdp, n->drawing, 1000, now());
+	fdp_node_ready(n->end.fdp, n->drawing, 1000, now());
 	node_serve(n);
 }
 
 static bool node_open(struct node_end *n)
 {
-	struct barrier_room *room = n->room;
-	const struct fdp_node_ops ops = { node_send, node_event, n };
-	const struct fdp_node_params params = {
-		.index = (uint16_t)n->index, .name = room->nodes[n->index].name,
-		.datagram_max = net_datagram_max(&room->layout.network),
-	};
 	int fds[2], count;
 
-	if (loop_create(&n->loop) < 0 || net_open_node(&n->net, &room->layout, n->index) < 0 ||
-	    fdp_node_create(&n->fdp, &params, &ops) < 0)
+	if (loop_create(&n->loop) < 0 || !cluster_node_open(&n->end, node_event))
 		return false;
-	count = net_fds(n->net, fds);
+	count = net_fds(n->end.net, fds);
 	n->tick_timer = loop_timer_create(n->loop, node_tick, n);
 	n->draw_timer = loop_timer_create(n->loop, node_drawn, n);
 	return n->draw_timer >= 0 && loop_add(n->loop, fds[0], EPOLLIN, node_readable, n) >= 0 &&
@@ -301,17 +260,19 @@ static bool node_open(struct node_end *n)
 
 void barrier_node(struct barrier_room *room, unsigned node)
 {
-	struct node_end end = { .room = room, .index = node, .random = node * 7919 + 1 }, *n = &end;
+	struct node_end end = {
+		.end = { .cluster = &room->cluster, .index = node }, .room = room, .random = node * 7919 + 1,
+	};
+	struct node_end *n = &end;
 
 	if (!node_open(n)) {
-		atomic_store(&room->failed, 1);
+		atomic_store(&room->cluster.failed, true);
 	} else {
 		node_tick(n, now());
-		while (!atomic_load(&room->over) && !atomic_load(&room->failed))
+		while (!atomic_load(&room->cluster.over) && !atomic_load(&room->cluster.failed))
 			if (loop_once(n->loop, 100) < 0)
-				atomic_store(&room->failed, 1);
+				atomic_store(&room->cluster.failed, true);
 	}
-	fdp_node_destroy(&n->fdp);
-	net_close(&n->net);
+	cluster_node_close(&n->end);
 	loop_destroy(&n->loop);
 }

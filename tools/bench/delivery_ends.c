@@ -4,17 +4,13 @@
 
 #include "base/clock.h"
 #include "base/cursor.h"
-#include "base/result.h"
-#include "daemon/socket.h"
 #include "protocol/message.h"
-#include "protocol/node.h"
+#include "tools/bench/cluster_ends.h"
 
-#include <errno.h>
 #include <poll.h>
-#include <signal.h>
 #include <spawn.h>
 #include <stdio.h>
-#include <stdlib.h>
+#include <string.h>
 #include <sys/wait.h>
 
 #define RECEIVE_MOST 256
@@ -63,22 +59,14 @@ static void wait_for(struct net *net, int64_t until_ns)
 }
 
 struct master_end {
+	struct cluster_master end; /* first: the protocol's ctx */
 	struct delivery_room *room;
-	struct net *net;
-	struct fdp_master *fdp;
-	struct param_state *state;
 	uint64_t random;
 	uint64_t frame;
 	unsigned bare;
 	int64_t next_ns, next_bare_ns;
+	uint64_t bytes_warm; /* sent before the updates that count */
 };
-
-static void master_send(void *ctx, int to, const uint8_t *bytes, size_t len)
-{
-	struct master_end *m = ctx;
-
-	net_send(m->net, to, bytes, len);
-}
 
 static void master_event(void *ctx, const struct fdp_master_event *event)
 {
@@ -92,8 +80,8 @@ static void master_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	struct master_end *m = ctx;
 
 	(void)from;
-	fdp_master_arrived(m->fdp, arrived_ns);
-	fdp_master_receive(m->fdp, bytes, len, now(), NULL);
+	fdp_master_arrived(m->end.fdp, arrived_ns);
+	fdp_master_receive(m->end.fdp, bytes, len, now(), NULL);
 }
 
 static uint32_t draw(struct master_end *m)
@@ -107,19 +95,19 @@ static void set_state(struct master_end *m, uint64_t frame)
 {
 	const float head[3] = { (float)draw(m) * 1e-9f, 1.7f, (float)draw(m) * 1e-9f };
 	const float turned[4] = { 0, head[0] * 0.1f, 0, 1 };
-	const uint64_t time = frame * (uint64_t)m->room->period_ns;
+	const uint64_t time = frame * (uint64_t)m->room->cluster.period_ns;
 
-	param_set(m->state, PARAM_FRAME_TIME, &time, frame);
-	param_set(m->state, PARAM_HEAD_POSITION, head, frame);
-	param_set(m->state, PARAM_HEAD_ROTATION, turned, frame);
-	param_set(m->state, PARAM_WAND_POSITION, head, frame);
-	param_set(m->state, PARAM_WAND_ROTATION, turned, frame);
+	param_set(m->end.state, PARAM_FRAME_TIME, &time, frame);
+	param_set(m->end.state, PARAM_HEAD_POSITION, head, frame);
+	param_set(m->end.state, PARAM_HEAD_ROTATION, turned, frame);
+	param_set(m->end.state, PARAM_WAND_POSITION, head, frame);
+	param_set(m->end.state, PARAM_WAND_ROTATION, turned, frame);
 #ifdef PARAM_BALLAST
 	static uint32_t ballast[PARAM_BALLAST];
 
 	for (size_t i = 0; i < PARAM_BALLAST; i++)
 		ballast[i] = draw(m);
-	param_set(m->state, PARAM_BALLAST_WORDS, ballast, frame);
+	param_set(m->end.state, PARAM_BALLAST_WORDS, ballast, frame);
 #endif
 }
 
@@ -131,16 +119,15 @@ static void begin(struct master_end *m)
 
 	set_state(m, frame);
 	if (frame == room->warm + 1) {
-		fdp_master_counters(m->fdp, &c);
-		room->bytes_out = c.bytes_out;
-		room->repairs = c.repairs;
+		fdp_master_counters(m->end.fdp, &c);
+		m->bytes_warm = c.bytes_out;
 	}
 	m->frame = frame;
 	if (frame > room->warm)
 		room->sent_ns[DELIVERY_FDP][frame - room->warm - 1] = now();
-	fdp_master_begin(m->fdp, m->state, frame, now());
-	net_flush(m->net);
-	m->next_ns += room->period_ns;
+	fdp_master_begin(m->end.fdp, m->end.state, frame, now());
+	net_flush(m->end.net);
+	m->next_ns += room->cluster.period_ns;
 	if (m->next_ns < now())
 		m->next_ns = now();
 }
@@ -150,7 +137,7 @@ static void send_bare(struct master_end *m)
 {
 	struct delivery_room *room = m->room;
 	static uint8_t bytes[FDP_DATAGRAM_MAX];
-	const size_t most = net_datagram_max(&room->layout.network);
+	const size_t most = net_datagram_max(&room->cluster.layout.network);
 	const size_t count = (room->update_bytes + most - 1) / most;
 
 	room->sent_ns[DELIVERY_BARE][m->bare] = now();
@@ -161,45 +148,25 @@ static void send_bare(struct master_end *m)
 		gr_write_bytes(&w, bare_magic, sizeof bare_magic);
 		gr_write_u32(&w, m->bare);
 		gr_write_u32(&w, (uint32_t)count);
-		net_send(m->net, room->layout.network.cast == LAYOUT_MULTICAST ? FDP_TO_GROUP : FDP_TO_ALL,
+		net_send(m->end.net, room->cluster.layout.network.cast == LAYOUT_MULTICAST ? FDP_TO_GROUP : FDP_TO_ALL,
 			 bytes, len < BARE_HEAD ? BARE_HEAD : len);
 	}
-	net_flush(m->net);
+	net_flush(m->end.net);
 	m->bare++;
-}
-
-static bool master_open(struct master_end *m)
-{
-	struct delivery_room *room = m->room;
-	const char *names[DELIVERY_NODES_MOST];
-	const struct fdp_master_ops ops = { .send = master_send, .event = master_event, .ctx = m };
-	const struct fdp_master_params params = {
-		.session = room->session, .node_names = names, .node_count = room->node_count,
-		.datagram_max = net_datagram_max(&room->layout.network),
-		.deadline_ns = DEADLINE_NS, .evict_frames = 1000,
-		.multicast = room->layout.network.cast == LAYOUT_MULTICAST,
-		.swap_lead_most_ns = room->period_ns / 4,
-	};
-
-	for (unsigned i = 0; i < room->node_count; i++)
-		names[i] = room->nodes[i].name;
-	return net_open_master(&m->net, &room->layout) == GR_OK &&
-	       fdp_master_create(&m->fdp, &params, &ops) == GR_OK &&
-	       param_state_create(&m->state) == GR_OK;
 }
 
 static void master_run(struct master_end *m)
 {
 	struct delivery_room *room = m->room;
 	const uint64_t last = room->warm + room->updates;
-	const int64_t give_up_ns = now() + 20 * GR_NS_PER_S + (int64_t)last * room->period_ns * 4;
+	const int64_t give_up_ns = now() + 20 * GR_NS_PER_S + (int64_t)last * room->cluster.period_ns * 4;
 	int fds[2];
 
-	net_fds(m->net, fds);
+	net_fds(m->end.net, fds);
 	while (now() < give_up_ns) {
-		const bool idle = fdp_master_idle(m->fdp);
-		const bool present = fdp_master_present(m->fdp) == room->node_count;
-		int64_t until_ns = fdp_master_next(m->fdp);
+		const bool idle = fdp_master_idle(m->end.fdp);
+		const bool present = fdp_master_present(m->end.fdp) == room->cluster.node_count;
+		int64_t until_ns = fdp_master_next(m->end.fdp);
 
 		if (m->frame >= last && m->bare >= room->updates && idle)
 			break;
@@ -209,65 +176,56 @@ static void master_run(struct master_end *m)
 			begin(m);
 		if (m->frame > room->warm && m->bare < room->updates) {
 			if (!m->next_bare_ns)
-				m->next_bare_ns = now() + room->period_ns / 2;
+				m->next_bare_ns = now() + room->cluster.period_ns / 2;
 			if (now() >= m->next_bare_ns) {
 				send_bare(m);
-				m->next_bare_ns += room->period_ns;
+				m->next_bare_ns += room->cluster.period_ns;
 			}
 			until_ns = m->next_bare_ns < until_ns ? m->next_bare_ns : until_ns;
 		}
-		if (now() >= fdp_master_next(m->fdp))
-			fdp_master_tick(m->fdp, now());
-		net_flush(m->net);
-		if (present && fdp_master_idle(m->fdp) && m->frame < last && m->next_ns < until_ns)
+		if (now() >= fdp_master_next(m->end.fdp))
+			fdp_master_tick(m->end.fdp, now());
+		net_flush(m->end.net);
+		if (present && fdp_master_idle(m->end.fdp) && m->frame < last && m->next_ns < until_ns)
 			until_ns = m->next_ns;
-		wait_for(m->net, until_ns);
-		net_receive(m->net, fds[0], RECEIVE_MOST, master_datagram, m);
-		net_flush(m->net);
+		wait_for(m->end.net, until_ns);
+		net_receive(m->end.net, fds[0], RECEIVE_MOST, master_datagram, m);
+		net_flush(m->end.net);
 	}
 }
 
 void delivery_master(struct delivery_room *room)
 {
-	struct master_end m = { .room = room, .random = room->session };
+	struct master_end m = {
+		.end.cluster = &room->cluster, .room = room, .random = room->cluster.session,
+	};
+	const struct fdp_master_params params = { .deadline_ns = DEADLINE_NS, .evict_frames = 1000 };
 	struct fdp_counters c;
 
-	if (master_open(&m)) {
+	if (cluster_master_open(&m.end, params, master_event)) {
 		master_run(&m);
-		fdp_master_counters(m.fdp, &c);
-		room->bytes_out = c.bytes_out - room->bytes_out;
-		room->repairs = c.repairs - room->repairs;
+		fdp_master_counters(m.end.fdp, &c);
+		room->bytes_out = c.bytes_out - m.bytes_warm;
 		if (m.frame < room->warm + room->updates)
-			atomic_store(&room->failed, 1);
+			atomic_store(&room->cluster.failed, true);
 	} else {
-		atomic_store(&room->failed, 1);
+		atomic_store(&room->cluster.failed, true);
 	}
-	atomic_store(&room->over, true);
-	param_state_destroy(&m.state);
-	fdp_master_destroy(&m.fdp);
-	net_close(&m.net);
+	atomic_store(&room->cluster.over, true);
+	cluster_master_close(&m.end);
 }
 
 struct node_end {
+	struct cluster_node end; /* first: the protocol's ctx */
 	struct delivery_room *room;
-	unsigned index;
-	struct net *net;
-	struct fdp_node *fdp;
 	uint64_t ready, swap; /* frames: to be said ready, to be shown */
 	uint32_t bare, bare_have;
 };
 
-static void node_send(void *ctx, const uint8_t *bytes, size_t len)
-{
-	struct node_end *n = ctx;
-
-	net_send(n->net, 0, bytes, len);
-}
-
 static void note(struct node_end *n, enum delivery_way way, uint64_t update)
 {
 	if (update < n->room->updates)
-		n->room->arrived_ns[way][(size_t)n->index * n->room->updates + update] = now();
+		n->room->arrived_ns[way][(size_t)n->end.index * n->room->updates + update] = now();
 }
 
 static void node_event(void *ctx, const struct fdp_node_event *event)
@@ -307,8 +265,8 @@ static void node_datagram(void *ctx, const uint8_t *bytes, size_t len,
 		take_bare(n, bytes, len);
 		return;
 	}
-	fdp_node_arrived(n->fdp, arrived_ns);
-	fdp_node_receive(n->fdp, bytes, len, now());
+	fdp_node_arrived(n->end.fdp, arrived_ns);
+	fdp_node_receive(n->end.fdp, bytes, len, now());
 }
 
 /* It draws nothing: what has come is ready at once. */
@@ -318,43 +276,36 @@ static void node_answer(struct node_end *n)
 		const uint64_t frame = n->ready;
 
 		n->ready = 0;
-		fdp_node_ready(n->fdp, frame, 0, now());
+		fdp_node_ready(n->end.fdp, frame, 0, now());
 	}
 	if (n->swap) {
 		const uint64_t frame = n->swap;
 
 		n->swap = 0;
-		fdp_node_swapped(n->fdp, frame, now(), now());
+		fdp_node_swapped(n->end.fdp, frame, now(), now());
 	}
-	net_flush(n->net);
+	net_flush(n->end.net);
 }
 
 void delivery_node(struct delivery_room *room, unsigned node)
 {
-	struct node_end n = { .room = room, .index = node };
-	const struct fdp_node_ops ops = { node_send, node_event, &n };
-	const struct fdp_node_params params = {
-		.index = (uint16_t)node, .name = room->nodes[node].name,
-		.datagram_max = net_datagram_max(&room->layout.network),
-	};
+	struct node_end n = { .end = { .cluster = &room->cluster, .index = node }, .room = room };
 	int fds[2], count;
 
-	if (net_open_node(&n.net, &room->layout, node) == GR_OK &&
-	    fdp_node_create(&n.fdp, &params, &ops) == GR_OK) {
-		count = net_fds(n.net, fds);
-		while (!atomic_load(&room->over)) {
-			if (now() >= fdp_node_next(n.fdp))
-				fdp_node_tick(n.fdp, now());
+	if (cluster_node_open(&n.end, node_event)) {
+		count = net_fds(n.end.net, fds);
+		while (!atomic_load(&room->cluster.over)) {
+			if (now() >= fdp_node_next(n.end.fdp))
+				fdp_node_tick(n.end.fdp, now());
 			node_answer(&n);
-			wait_for(n.net, fdp_node_next(n.fdp));
+			wait_for(n.end.net, fdp_node_next(n.end.fdp));
 			for (int i = 0; i < count; i++) {
-				net_receive(n.net, fds[i], RECEIVE_MOST, node_datagram, &n);
+				net_receive(n.end.net, fds[i], RECEIVE_MOST, node_datagram, &n);
 				node_answer(&n);
 			}
 		}
 	} else {
-		atomic_store(&room->failed, 1);
+		atomic_store(&room->cluster.failed, true);
 	}
-	fdp_node_destroy(&n.fdp);
-	net_close(&n.net);
+	cluster_node_close(&n.end);
 }

@@ -39,13 +39,20 @@ tools_bench_bake_SOURCES = tools/bench/bake.c tools/bench/atrium.c tools/bench/a
 tools_bench_bake_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS)
 tools_bench_bake_LDADD = $(RENDERER_LIBS)
 
+# A master and nodes in processes of their own: what the next two have in common.
+CLUSTER_SOURCES = \
+	tools/bench/cluster.c tools/bench/cluster.h \
+	tools/bench/cluster_ends.c tools/bench/cluster_ends.h \
+	tools/bench/cluster_net.c tools/bench/cluster_net.h
+CLUSTER_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) -pthread
+CLUSTER_LIBS = tools/libgbench.a tools/libgtools.a daemon/libgdaemon.a config/libgconfig.a
+
 # Exit skew of the barrier, told and at a time; `grotto bench barrier` starts it.
 tools_bench_barrier_SOURCES = \
 	tools/bench/barrier.c tools/bench/barrier.h \
-	tools/bench/barrier_ends.c \
-	tools/bench/barrier_net.c
-tools_bench_barrier_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) -pthread
-tools_bench_barrier_LDADD = daemon/libgdaemon.a $(PROTOCOL_LIBS) -lpthread
+	tools/bench/barrier_ends.c $(CLUSTER_SOURCES)
+tools_bench_barrier_CFLAGS = $(CLUSTER_CFLAGS)
+tools_bench_barrier_LDADD = $(CLUSTER_LIBS) $(PROTOCOL_LIBS) -lpthread -lm
 
 # From the master to the last node, for updates of 200 B, 4 KB and 64 KB: the protocol
 # with a parameter more, so it is built for these programs alone.
@@ -54,12 +61,11 @@ EXTRA_PROGRAMS = tools/bench-delivery-200 tools/bench-delivery-4k tools/bench-de
 bench-delivery: $(EXTRA_PROGRAMS)
 CLEANFILES += $(EXTRA_PROGRAMS)
 DELIVERY_SOURCES = \
-	tools/bench/barrier.h tools/bench/barrier_net.c \
 	tools/bench/delivery.c tools/bench/delivery.h \
-	tools/bench/delivery_ends.c \
+	tools/bench/delivery_ends.c $(CLUSTER_SOURCES) \
 	$(protocol_libgprotocol_a_SOURCES)
-DELIVERY_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS) -pthread
-DELIVERY_LIBS = daemon/libgdaemon.a $(BASE_LIBS) $(LZO_LIBS) -lpthread
+DELIVERY_CFLAGS = $(CLUSTER_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS)
+DELIVERY_LIBS = $(CLUSTER_LIBS) $(BASE_LIBS) $(LZO_LIBS) -lpthread -lm
 tools_bench_delivery_200_SOURCES = $(DELIVERY_SOURCES)
 tools_bench_delivery_200_CFLAGS = $(DELIVERY_CFLAGS)
 tools_bench_delivery_200_LDADD = $(DELIVERY_LIBS)

@@ -1,6 +1,6 @@
 #include <config.h> /* unshare */
 
-#include "tools/bench/barrier.h"
+#include "tools/bench/cluster_net.h"
 
 #include <errno.h>
 #include <sched.h>
@@ -36,7 +36,7 @@ static bool ip(const char *format, ...)
 	return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-bool barrier_net_hub(void)
+bool cluster_net_hub(void)
 {
 	if (unshare(CLONE_NEWNET) < 0) {
 		fprintf(stderr, "no network namespaces (%s): loopback\n", strerror(errno));
@@ -49,18 +49,18 @@ bool barrier_net_hub(void)
 	return false;
 }
 
-bool barrier_net_leave(void)
+bool cluster_net_leave(void)
 {
 	return unshare(CLONE_NEWNET) == 0;
 }
 
-bool barrier_net_connect(unsigned end, pid_t pid)
+bool cluster_net_connect(unsigned end, pid_t pid)
 {
 	return ip("link add p%u type veth peer name eth0 netns %d", end, (int)pid) &&
 	       ip("link set p%u master br0", end) && ip("link set p%u up", end);
 }
 
-bool barrier_net_address(const char *address)
+bool cluster_net_address(const char *address)
 {
 	return ip("address add %s/24 dev eth0", address) && ip("link set eth0 up") && ip("link set lo up");
 }
