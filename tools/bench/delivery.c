@@ -21,10 +21,7 @@ static struct delivery_room *make_room(const struct cluster_options *o)
 
 	if (!room)
 		return NULL;
-	room->update_bytes = PLAIN_BYTES;
-#ifdef PARAM_BALLAST
-	room->update_bytes += (size_t)4 * PARAM_BALLAST;
-#endif
+	room->update_bytes = PLAIN_BYTES + delivery_ballast();
 	room->updates = (unsigned)o->samples;
 	room->warm = WARM;
 	for (int way = 0; way < DELIVERY_WAYS; way++) {

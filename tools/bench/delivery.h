@@ -1,8 +1,6 @@
 /*
  * How long an update takes from the master to the last node, beside bare
- * datagrams of the same size in the same run. The state is made longer by a parameter
- * of this program alone (PARAM_BALLAST, in 4-byte words): today's is at most some 1100
- * bytes. Private to bench-delivery.
+ * datagrams of the same size in the same run. Private to bench-delivery.
  */
 #ifndef GROTTO_TOOLS_BENCH_DELIVERY_H
 #define GROTTO_TOOLS_BENCH_DELIVERY_H
@@ -23,6 +21,9 @@ struct delivery_room {
 	int64_t *sent_ns[DELIVERY_WAYS], *arrived_ns[DELIVERY_WAYS];
 	uint64_t bytes_out; /* of the protocol, for the updates that count, in this run */
 };
+
+/* Bytes of the parameter that makes updates long (ballast/protocol/params.def); 0: there is none. */
+size_t delivery_ballast(void);
 
 /* One run, in the process of that end. */
 void delivery_master(struct delivery_room *room);

@@ -16,6 +16,7 @@
 #define RECEIVE_MOST 256
 #define LOOK_NS (20 * GR_NS_PER_MS) /* how often an end looks whether the run is over */
 #define BARE_HEAD 12
+#define BALLAST_WORDS_MOST (UINT16_MAX / 4) /* the size of a parameter has 16 bits */
 #define DEADLINE_NS (33 * GR_NS_PER_MS)
 
 static const uint8_t bare_magic[4] = { 'B', 'A', 'R', 'E' };
@@ -90,6 +91,35 @@ static uint32_t draw(struct master_end *m)
 	return (uint32_t)(m->random >> 32);
 }
 
+/* PARAM_COUNT: this program's table has none. */
+static enum param_id ballast_id(void)
+{
+	enum param_id id = (enum param_id)0;
+
+	while (id < PARAM_COUNT && strcmp(param_info(id)->name, "ballast"))
+		id++;
+	return id;
+}
+
+size_t delivery_ballast(void)
+{
+	const enum param_id id = ballast_id();
+
+	return id < PARAM_COUNT ? param_info(id)->size : 0;
+}
+
+static void set_ballast(struct master_end *m, uint64_t frame)
+{
+	static uint32_t words[BALLAST_WORDS_MOST];
+	const enum param_id id = ballast_id();
+
+	if (id == PARAM_COUNT)
+		return;
+	for (size_t i = 0; i < param_info(id)->count; i++)
+		words[i] = draw(m);
+	param_set(m->end.state, id, words, frame);
+}
+
 /* All of it is new, and does not pack. */
 static void set_state(struct master_end *m, uint64_t frame)
 {
@@ -102,13 +132,7 @@ static void set_state(struct master_end *m, uint64_t frame)
 	param_set(m->end.state, PARAM_HEAD_ROTATION, turned, frame);
 	param_set(m->end.state, PARAM_WAND_POSITION, head, frame);
 	param_set(m->end.state, PARAM_WAND_ROTATION, turned, frame);
-#ifdef PARAM_BALLAST
-	static uint32_t ballast[PARAM_BALLAST];
-
-	for (size_t i = 0; i < PARAM_BALLAST; i++)
-		ballast[i] = draw(m);
-	param_set(m->end.state, PARAM_BALLAST_WORDS, ballast, frame);
-#endif
+	set_ballast(m, frame);
 }
 
 static void begin(struct master_end *m)

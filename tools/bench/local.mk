@@ -54,26 +54,28 @@ tools_bench_barrier_SOURCES = \
 tools_bench_barrier_CFLAGS = $(CLUSTER_CFLAGS)
 tools_bench_barrier_LDADD = $(CLUSTER_LIBS) $(PROTOCOL_LIBS) -lpthread -lm
 
-# From the master to the last node, for updates of 200 B, 4 KB and 64 KB: the protocol
-# with a parameter more, so it is built for these programs alone.
+# From the master to the last node, for updates of 200 B, and of 4 KB and 64 KB by a
+# parameter more: the protocol is built for these two with the table in ballast/.
 # `make bench-delivery`; scripts/results runs them.
 EXTRA_PROGRAMS = tools/bench-delivery-200 tools/bench-delivery-4k tools/bench-delivery-64k
 bench-delivery: $(EXTRA_PROGRAMS)
 CLEANFILES += $(EXTRA_PROGRAMS)
 DELIVERY_SOURCES = \
 	tools/bench/delivery.c tools/bench/delivery.h \
-	tools/bench/delivery_ends.c $(CLUSTER_SOURCES) \
-	$(protocol_libgprotocol_a_SOURCES)
-DELIVERY_CFLAGS = $(CLUSTER_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS)
-DELIVERY_LIBS = $(CLUSTER_LIBS) $(BASE_LIBS) $(LZO_LIBS) -lpthread -lm
+	tools/bench/delivery_ends.c $(CLUSTER_SOURCES)
+DELIVERY_BALLAST_SOURCES = $(DELIVERY_SOURCES) \
+	tools/bench/ballast/protocol/params.def $(protocol_libgprotocol_a_SOURCES)
+DELIVERY_BALLAST_CPPFLAGS = -iquote $(top_srcdir)/tools/bench/ballast $(AM_CPPFLAGS)
+DELIVERY_BALLAST_CFLAGS = $(CLUSTER_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS)
+DELIVERY_BALLAST_LIBS = $(CLUSTER_LIBS) $(BASE_LIBS) $(LZO_LIBS) -lpthread -lm
 tools_bench_delivery_200_SOURCES = $(DELIVERY_SOURCES)
-tools_bench_delivery_200_CFLAGS = $(DELIVERY_CFLAGS)
-tools_bench_delivery_200_LDADD = $(DELIVERY_LIBS)
-tools_bench_delivery_4k_SOURCES = $(DELIVERY_SOURCES)
-tools_bench_delivery_4k_CPPFLAGS = $(AM_CPPFLAGS) -DPARAM_BALLAST=970
-tools_bench_delivery_4k_CFLAGS = $(DELIVERY_CFLAGS)
-tools_bench_delivery_4k_LDADD = $(DELIVERY_LIBS)
-tools_bench_delivery_64k_SOURCES = $(DELIVERY_SOURCES)
-tools_bench_delivery_64k_CPPFLAGS = $(AM_CPPFLAGS) -DPARAM_BALLAST=16000
-tools_bench_delivery_64k_CFLAGS = $(DELIVERY_CFLAGS)
-tools_bench_delivery_64k_LDADD = $(DELIVERY_LIBS)
+tools_bench_delivery_200_CFLAGS = $(CLUSTER_CFLAGS)
+tools_bench_delivery_200_LDADD = $(CLUSTER_LIBS) $(PROTOCOL_LIBS) -lpthread -lm
+tools_bench_delivery_4k_SOURCES = $(DELIVERY_BALLAST_SOURCES)
+tools_bench_delivery_4k_CPPFLAGS = $(DELIVERY_BALLAST_CPPFLAGS) -DBALLAST_WORDS=970
+tools_bench_delivery_4k_CFLAGS = $(DELIVERY_BALLAST_CFLAGS)
+tools_bench_delivery_4k_LDADD = $(DELIVERY_BALLAST_LIBS)
+tools_bench_delivery_64k_SOURCES = $(DELIVERY_BALLAST_SOURCES)
+tools_bench_delivery_64k_CPPFLAGS = $(DELIVERY_BALLAST_CPPFLAGS) -DBALLAST_WORDS=16000
+tools_bench_delivery_64k_CFLAGS = $(DELIVERY_BALLAST_CFLAGS)
+tools_bench_delivery_64k_LDADD = $(DELIVERY_BALLAST_LIBS)
