@@ -23,6 +23,11 @@
 #define HASH_BYTES 32
 #define HEAD_BYTES (8 + 4 * 4 + 2 * 8 + 32)
 #define PIXEL_BYTES (4 * 3 * sizeof(double))
+/*
+ * Of a sum: 2^30 samples of the largest float, squared, are 1.3e86. What is
+ * more was never summed, and its square might not be finite.
+ */
+#define SUM_MOST 1e90
 /* As for pictures. */
 #define PIXELS_MOST (IMAGE_MAX_SAMPLES / 3)
 
@@ -173,8 +178,8 @@ static int read_sums(const struct input *in, struct gr_reader *r, struct referen
 			uint64_t bits = gr_read_u64(r);
 
 			memcpy(*sums[s] + i, &bits, sizeof bits);
-			if (!isfinite((*sums[s])[i]))
-				return refuse(in, GR_ERR_FORMAT, "a sum in it is no finite number");
+			if (!(fabs((*sums[s])[i]) <= SUM_MOST))
+				return refuse(in, GR_ERR_FORMAT, "a sum in it is not one of light");
 		}
 	}
 	return GR_OK;

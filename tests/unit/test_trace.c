@@ -8,6 +8,7 @@
 #include "renderer/trace/sampler.h"
 #include "tests/unit/unit.h"
 
+#include <float.h>
 #include <unistd.h>
 
 #define PI 3.14159265358979323846
@@ -470,6 +471,41 @@ static void films_come_back(void **state)
 	gr_diag_finish(&diag);
 }
 
+/* A film that says `sum`, with a checksum that fits: does it come back? */
+static int comes_back_with(double sum)
+{
+	struct reference_film film, again = { 0 };
+	struct gr_diag diag = { 0 };
+	char path[64];
+	int result;
+
+	snprintf(path, sizeof(path), "test_trace.%ld.film", (long)getpid());
+	fill_film(&film);
+	film.radiance[1] = sum;
+	assert_int_equal(reference_film_save(&film, path), GR_OK);
+	result = reference_film_load(&again, path, &diag);
+	remove(path);
+	if (result == GR_OK)
+		assert_true(isfinite(reference_film_error(&again)));
+	reference_film_finish(&again);
+	reference_film_finish(&film);
+	gr_diag_finish(&diag);
+	return result;
+}
+
+/* Sums whose squares would not be finite are none of light: an error from them would be NaN. */
+static void sums_of_a_film_have_a_range(void **state)
+{
+	(void)state;
+	assert_int_equal(comes_back_with(0.0), GR_OK);
+	assert_int_equal(comes_back_with(5e-324), GR_OK);
+	assert_int_equal(comes_back_with((double)FLT_MAX * 0x1p30), GR_OK);
+	assert_int_equal(comes_back_with(1e300), GR_ERR_FORMAT);
+	assert_int_equal(comes_back_with(-1e300), GR_ERR_FORMAT);
+	assert_int_equal(comes_back_with((double)INFINITY), GR_ERR_FORMAT);
+	assert_int_equal(comes_back_with((double)NAN), GR_ERR_FORMAT);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -484,6 +520,7 @@ int main(void)
 		cmocka_unit_test(medium_as_shaders),
 		cmocka_unit_test(texels_as_gl),
 		cmocka_unit_test(films_come_back),
+		cmocka_unit_test(sums_of_a_film_have_a_range),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
