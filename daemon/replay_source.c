@@ -190,6 +190,15 @@ int replay_source_step(struct replay_source *s, uint64_t frames)
 	return GR_OK;
 }
 
+/* Of the file, as far as was read. Frames lost at its end leave no gap between numbers, bytes do. */
+static uint64_t bytes_damaged(const struct replay_source *s)
+{
+	struct record_damage damage;
+
+	record_player_damage(s->player, &damage);
+	return damage.bytes + damage.tail;
+}
+
 bool replay_source_end(struct replay_source *s)
 {
 	const struct replay_check *c = &s->check;
@@ -213,6 +222,9 @@ bool replay_source_end(struct replay_source *s)
 	if (counts.missing)
 		gr_warning("%" PRIu64 " frames of the record are missing or damaged and were left out",
 			   counts.missing);
+	if (bytes_damaged(s))
+		gr_warning("%s: %" PRIu64 " bytes are damaged or no whole block: what they held was left out",
+			   s->params.path, bytes_damaged(s));
 	if (s->result < 0)
 		gr_error("%s: cannot be read any further", s->params.path);
 	return passed;
@@ -228,6 +240,7 @@ void replay_source_write_json(const struct replay_source *s, struct json *json,
 	json_string(json, "path", s->params.path);
 	json_u64(json, "frames", c->frames);
 	json_u64(json, "frames_missing", counts.missing);
+	json_u64(json, "bytes_damaged", bytes_damaged(s));
 	json_u64(json, "frames_wrong", counts.wrong);
 	json_u64(json, "master_equal", c->master_equal);
 	json_u64(json, "nodes_equal", c->node_equal);

@@ -155,6 +155,9 @@ int demo_replayed(const struct demo *demo)
 	if (report_count(replay, "frames_missing") > 0)
 		printf("%lld frames of the recording are missing or damaged and were left out\n",
 		       (long long)report_count(replay, "frames_missing"));
+	if (report_count(replay, "bytes_damaged") > 0)
+		printf("%lld bytes of the recording are damaged or no whole block: what they held was left out\n",
+		       (long long)report_count(replay, "bytes_damaged"));
 	json_object_put(master);
 	return frames;
 }
