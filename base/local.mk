@@ -4,8 +4,10 @@ base_libgbase_a_SOURCES = \
 	base/cursor.h \
 	base/diag.c base/diag.h \
 	base/item.h \
+	base/line_fit.c base/line_fit.h \
 	base/log.c base/log.h \
 	base/plain.c base/plain.h \
 	base/pose.c base/pose.h \
-	base/result.c base/result.h
+	base/result.c base/result.h \
+	base/seqlock.h
 base_libgbase_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS)

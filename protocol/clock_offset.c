@@ -1,5 +1,7 @@
 #include "protocol/clock_offset.h"
 
+#include "base/line_fit.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -31,31 +33,22 @@ static double line_at(const struct fdp_clock *c, int64_t at_ns)
 	return c->skew * (double)(at_ns - c->at_ns);
 }
 
-/* Sums of the weighted least squares, times in s from the newest, offsets in ns from its. */
-struct sums {
-	double w, x, y, xx, xy;
-};
-
-static void add_bin(struct sums *s, const struct fdp_clock *c, const struct fdp_clock_bin *bin,
-		    double noise_ns)
+/* Times in s from the newest, offsets in ns from its. */
+static void add_bin(struct gr_line_fit *line, const struct fdp_clock *c,
+		    const struct fdp_clock_bin *bin, double noise_ns)
 {
 	/* A longer trip was held up on one way or the other: it may be off by half of that. */
 	const double off = noise_ns + 0.5 * (double)(bin->trip_ns - c->least_trip_ns);
-	const double w = 1 / (off * off), x = (double)(bin->at_ns - c->at_ns) * 1e-9;
-	const double y = (double)(bin->offset_ns - c->offset_ns);
 
-	s->w += w;
-	s->x += w * x;
-	s->y += w * y;
-	s->xx += w * x * x;
-	s->xy += w * x * y;
+	gr_line_fit_add(line, (double)(bin->at_ns - c->at_ns) * 1e-9,
+			(double)(bin->offset_ns - c->offset_ns), 1 / (off * off));
 }
 
 static void fit(struct fdp_clock *c)
 {
 	const struct fdp_clock_bin *newest = &c->bins[c->newest_epoch % FDP_CLOCK_BINS];
-	struct sums s = { 0 };
-	double noise_ns, spread, slope;
+	struct gr_line_fit line = { 0 };
+	double noise_ns, offset, slope, error;
 
 	c->at_ns = newest->at_ns;
 	c->offset_ns = newest->offset_ns;
@@ -66,14 +59,11 @@ static void fit(struct fdp_clock *c)
 	noise_ns = fmax(NOISE_LEAST_NS, (double)c->least_trip_ns / 32);
 	for (int i = 0; i < FDP_CLOCK_BINS; i++)
 		if (in_window(c, &c->bins[i]))
-			add_bin(&s, c, &c->bins[i], noise_ns);
-	/* Normal equations with the prior of the slope, both in ns/s. */
-	spread = s.xx - s.x * s.x / s.w + 1 / (SKEW_PRIOR * 1e9 * SKEW_PRIOR * 1e9);
-	slope = (s.xy - s.x * s.y / s.w) / spread;
-	slope = fmin(fmax(slope, -SKEW_MOST * 1e9), SKEW_MOST * 1e9);
+			add_bin(&line, c, &c->bins[i], noise_ns);
+	gr_line_fit_solve(&line, SKEW_PRIOR * 1e9, SKEW_MOST * 1e9, &offset, &slope, &error); /* ns/s */
 	c->skew = slope * 1e-9;
-	c->skew_error = fmin(3 / sqrt(spread) * 1e-9, 3 * SKEW_PRIOR) + SKEW_WANDER;
-	c->offset_ns += (int64_t)llrint((s.y - slope * s.x) / s.w);
+	c->skew_error = fmin(3 * error * 1e-9, 3 * SKEW_PRIOR) + SKEW_WANDER;
+	c->offset_ns += (int64_t)llrint(offset);
 }
 
 /*
