@@ -151,24 +151,25 @@ static void extrapolate(const struct track_history *h, enum track_body body,
 	turn_by(last->T_room_body.q, angular, out->q);
 }
 
-/* Buttons do not mix: the newest word at or before time_ns, lost pose or not. */
-static uint32_t buttons_at(const struct track_history *h, enum track_body body, int64_t time_ns)
+/* Buttons and axes do not mix: the newest at or before time_ns, lost pose or not. */
+static const struct track_sample *input_at(const struct track_history *h, enum track_body body,
+					   int64_t time_ns)
 {
-	const struct track_sample *s = NULL;
+	const struct track_sample *s = nth_last(h, body, 0);
 
 	for (uint64_t back = 0; back < kept(h, body); back++) {
 		s = nth_last(h, body, back);
 		if (s->time_ns <= time_ns)
 			break;
 	}
-	return s ? s->buttons : 0;
+	return s;
 }
 
 bool track_history_at(const struct track_history *history, enum track_body body, int64_t time_ns,
 		      int64_t max_ahead_ns, int64_t stale_ns, struct track_sample *out,
 		      bool *tracked)
 {
-	const struct track_sample *after = NULL, *before = NULL, *last;
+	const struct track_sample *after = NULL, *before = NULL, *last, *input;
 	struct gr_pose pose;
 	bool seen;
 
@@ -197,13 +198,16 @@ bool track_history_at(const struct track_history *history, enum track_body body,
 	}
 	last = nth_last(history, body, 0);
 	seen = last->valid && time_ns - last->time_ns < stale_ns;
+	input = input_at(history, body, time_ns);
 	*out = (struct track_sample){
 		.time_ns = time_ns,
 		.body = body,
 		.T_room_body = pose,
-		.buttons = buttons_at(history, body, time_ns),
+		.buttons = input->buttons,
 		.valid = seen,
+		.axis_count = input->axis_count,
 	};
+	memcpy(out->axes, input->axes, sizeof out->axes);
 	if (tracked)
 		*tracked = seen;
 	return true;

@@ -1,7 +1,8 @@
 /*
- * A tracker: something that says where head and wand are. Drivers fill a
- * history of time-stamped samples; the master asks for the pose at the time
- * at which the frame's photons leave the wall.
+ * Where head and wand are: samples, the sources that make them up (simulated,
+ * replayed; devices come by tracking/device.h and bind.h), and the recent past
+ * of each body, which the master asks for the pose at the time at which the
+ * frame's photons leave the wall.
  *
  * Frame: room. Times: ns of the master's monotonic clock (or of the frame
  * clock of a demo). Thread: a source is polled by one thread.
@@ -11,6 +12,7 @@
 
 #include "base/diag.h"
 #include "base/pose.h"
+#include "tracking/report.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -23,6 +25,10 @@ struct track_sample {
 	struct gr_pose T_room_body;
 	uint32_t buttons; /* wand only */
 	bool valid;       /* false: the device said it lost the body at time_ns */
+	bool device_timed;
+	int64_t device_ns; /* if so: the same moment by the device's own clock */
+	uint32_t axis_count;
+	float axes[TRACK_AXES]; /* wand only: -1..1, right and up +; triggers 0..1 */
 };
 
 struct track_source;
@@ -78,7 +84,7 @@ int track_history_add(struct track_history *history, const struct track_sample *
  * after the newest extrapolated for at most max_ahead_ns and held from there
  * on. The velocity is a least-squares line through the last 50 ms, or through
  * the last two samples where these lie further back. Samples that are not
- * valid do not count but for their buttons; buttons do not mix.
+ * valid do not count but for their buttons and axes; these do not mix.
  *
  * False, and *out and *tracked untouched, when the body was never seen.
  * out->valid and *tracked (may be NULL) tell whether the last sample was valid
