@@ -19,20 +19,6 @@ static char *take(char **from)
 	return text;
 }
 
-/* heading about +Y, then pitch about the turned X, then roll about the line of sight. */
-static void pose_from_angles(const vec3 position, const vec3 angles, struct gr_pose *out)
-{
-	struct gr_pose pitch = GR_POSE_IDENTITY, roll = GR_POSE_IDENTITY;
-
-	gr_pose_heading(position, angles[0], out);
-	pitch.q[0] = sinf(angles[1] * 0.5f);
-	pitch.q[3] = cosf(angles[1] * 0.5f);
-	roll.q[2] = sinf(angles[2] * 0.5f);
-	roll.q[3] = cosf(angles[2] * 0.5f);
-	gr_pose_mul(out, &pitch, out);
-	gr_pose_mul(out, &roll, out);
-}
-
 static void build_walls(struct layout *layout, struct layout_file *file)
 {
 	for (size_t w = 0; w < file->wall_count; w++) {
@@ -80,17 +66,13 @@ static void build_rest(struct layout *layout, struct layout_file *file)
 	layout->rates = file->rates.rates;
 	layout->swap = file->swap.swap;
 	layout->test = file->test.test;
-	for (size_t i = 0; i < file->tracker_count; i++) {
-		layout->trackers[i] = file->trackers[i].tracker;
-		layout->trackers[i].file = take(&file->trackers[i].tracker.file);
-		layout->trackers[i].sim = file->trackers[i].sim.sim;
-		layout->trackers[i].line = (int)config_setting_source_line(file->trackers[i].at);
-	}
+	for (size_t i = 0; i < file->tracker_count; i++)
+		layout_tracker_build(&layout->trackers[i], &file->trackers[i]);
 	layout->tracker_count = file->tracker_count;
 	glm_vec3_copy(file->start.head_angles, layout->start_head_angles);
 	glm_vec3_copy(file->start.wand_angles, layout->start_wand_angles);
-	pose_from_angles(file->start.head, file->start.head_angles, &layout->start_head);
-	pose_from_angles(file->start.wand, file->start.wand_angles, &layout->start_wand);
+	layout_pose_from_angles(file->start.head, file->start.head_angles, &layout->start_head);
+	layout_pose_from_angles(file->start.wand, file->start.wand_angles, &layout->start_wand);
 	layout->eye_separation_m = file->eye_separation_m;
 	glm_vec3_copy(file->room.min, layout->room_min);
 	glm_vec3_copy(file->room.max, layout->room_max);
@@ -176,7 +158,7 @@ void layout_destroy(struct layout **layout)
 		free(l->nodes[i].display);
 	}
 	for (size_t i = 0; i < l->tracker_count; i++)
-		free(l->trackers[i].file);
+		layout_tracker_free(&l->trackers[i]);
 	free(l->nodes);
 	free(l->walls);
 	free(l->trackers);

@@ -114,7 +114,8 @@ struct layout_test {
 	bool off_loopback; /* and that beyond this machine */
 };
 
-enum layout_tracker_kind { LAYOUT_TRACKER_SIM, LAYOUT_TRACKER_REPLAY };
+/* All after LAYOUT_TRACKER_REPLAY are devices, see docs/trackers.md. */
+enum layout_tracker_kind { LAYOUT_TRACKER_SIM, LAYOUT_TRACKER_REPLAY, LAYOUT_TRACKER_HYDRA };
 
 /* The simulated visitor, see tracking/sim.h for what each does. */
 struct layout_sim {
@@ -129,15 +130,44 @@ struct layout_sim {
 	float walk_speed_m_s;
 };
 
+enum layout_body { LAYOUT_HEAD, LAYOUT_WAND };
+
+/* Position and angles (heading, pitch, roll; radians) as the file gives them, and the pose they make. */
+struct layout_frame {
+	vec3 position, angles;
+	struct gr_pose pose;
+};
+
+/* What a device's sensor gives of a body. */
+struct layout_binding {
+	enum layout_body body;
+	char sensor[LAYOUT_NAME_MAX]; /* the device's name for it; "": its first */
+	bool position, orientation, input; /* input: buttons and axes */
+	struct layout_frame sensor_body;   /* T_sensor_body: the eyes' middle or the wand's tip */
+	char *buttons, *axes; /* names of the device, see tracking/bind.h; NULL: its own order */
+	int line;
+};
+#define LAYOUT_MAX_BINDINGS 8
+
 struct layout_tracker {
 	char name[LAYOUT_NAME_MAX];
 	enum layout_tracker_kind kind;
-	bool head, wand; /* what it tracks */
+	bool head, wand; /* what it tracks; of a device: what is bound */
 	char *file;      /* replay: the log, absolute or relative to the layout file */
 	bool loop;
 	struct layout_sim sim;
+	/* Devices. */
+	char *serial; /* NULL: any */
+	int number;   /* of those that fit, from 0 */
+	int64_t latency_ns; /* of the device's quickest report */
+	struct layout_frame room_base; /* T_room_base: where the device's frame is */
+	float scale; /* room metres per metre that the device says */
+	struct layout_binding bindings[LAYOUT_MAX_BINDINGS];
+	size_t binding_count;
 	int line;
 };
+/* Whether it is a device, with bindings. */
+bool layout_tracker_is_device(const struct layout_tracker *tracker);
 
 struct layout {
 	char *path; /* as given to layout_load */

@@ -13,47 +13,6 @@ static void check_wall_names(struct options_reader *reader, struct layout_file *
 					      file->walls[i].name);
 }
 
-static void check_tracker(struct options_reader *reader, const struct layout_file *file, size_t i)
-{
-	const struct layout_file_tracker *entry = &file->trackers[i];
-	const struct layout_tracker *tracker = &entry->tracker;
-
-	if (!entry->at)
-		return;
-	for (size_t j = 0; j < i; j++) {
-		const struct layout_tracker *other = &file->trackers[j].tracker;
-
-		if (!file->trackers[j].at)
-			continue;
-		if (tracker->name[0] && !strcmp(tracker->name, other->name))
-			options_fault(reader, GR_DIAG_ERROR, entry->at, "name",
-				      "tracker \"%s\" is there twice; each needs a name of its own",
-				      tracker->name);
-		if (tracker->head && other->head)
-			options_fault(reader, GR_DIAG_ERROR, entry->at, "head",
-				      "tracker \"%s\" tracks the head already; say head = false in one",
-				      other->name);
-		if (tracker->wand && other->wand)
-			options_fault(reader, GR_DIAG_ERROR, entry->at, "wand",
-				      "tracker \"%s\" tracks the wand already; say wand = false in one",
-				      other->name);
-	}
-	if (!tracker->head && !tracker->wand)
-		options_fault(reader, GR_DIAG_ERROR, entry->at, NULL,
-			      "tracks neither head nor wand; leave it out or set one of them");
-	if ((int)tracker->kind == OPTION_ABSENT) /* reported already */
-		return;
-	if (tracker->kind == LAYOUT_TRACKER_REPLAY && !options_given(entry->at, "file"))
-		options_fault(reader, GR_DIAG_ERROR, entry->at, "file",
-			      "missing; a replay needs the log that it replays");
-	if (tracker->kind != LAYOUT_TRACKER_REPLAY && tracker->file)
-		options_fault(reader, GR_DIAG_WARNING, entry->at, "file",
-			      "not used: only kind = \"replay\" reads a log");
-	if (tracker->kind != LAYOUT_TRACKER_SIM && entry->sim.at)
-		options_fault(reader, GR_DIAG_WARNING, entry->at, "sim",
-			      "not used: only kind = \"sim\" is simulated");
-}
-
 static void check_control_socket(struct options_reader *reader, const struct layout_file *file)
 {
 	const struct sockaddr_un address;
@@ -80,7 +39,6 @@ void layout_check(struct options_reader *reader, struct layout_file *file)
 	layout_check_nodes(reader, file);
 	layout_check_room(reader, file);
 	layout_check_network(reader, file);
-	for (size_t i = 0; i < file->tracker_count; i++)
-		check_tracker(reader, file, i);
+	layout_check_trackers(reader, file);
 	check_control_socket(reader, file);
 }

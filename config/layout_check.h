@@ -19,10 +19,11 @@
  */
 void layout_check(struct options_reader *reader, struct layout_file *file);
 
-/* Parts of it: corners of every wall; who draws what; start pose and room; addresses. */
+/* Parts of it: corners of every wall; who draws what; start pose and room; addresses; trackers. */
 void layout_check_walls(struct options_reader *reader, struct layout_file *file);
 void layout_check_nodes(struct options_reader *reader, struct layout_file *file);
 void layout_check_room(struct options_reader *reader, struct layout_file *file);
 void layout_check_network(struct options_reader *reader, struct layout_file *file);
+void layout_check_trackers(struct options_reader *reader, const struct layout_file *file);
 
 #endif

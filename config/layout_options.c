@@ -1,9 +1,5 @@
 #include "config/layout_options.h"
 
-#define RAD_PER_DEG 0.017453292519943295
-#define NS_PER_MS 1e6
-#define NS_PER_US 1e3
-
 static const char *const eyes_choices[] = { "mono", "quad-buffer", "side-by-side", "top-bottom",
 					    "eye-per-node", NULL };
 static const char *const node_eyes_choices[] = { "mono", "quad-buffer", "side-by-side",
@@ -13,7 +9,6 @@ static const char *const target_choices[] = { "headless", "window", "fullscreen"
 static const char *const cast_choices[] = { "unicast", "multicast", "broadcast", "auto", NULL };
 static const char *const swap_choices[] = { "auto", "message", "scheduled", "hardware", NULL };
 static const char *const orphan_choices[] = { "hold", "black", "test", NULL };
-static const char *const tracker_choices[] = { "sim", "replay", NULL };
 
 #define AT(type, member) .offset = offsetof(struct type, member)
 
@@ -62,13 +57,13 @@ static const struct option wall_options[] = {
 	{ .key = "size", .type = OPTION_FLOAT, .count = 2, .min = 0.01, .max = 100, .unit = "m",
 	  AT(layout_file_wall, size), .help = "width and height of the wall; with center" },
 	{ .key = "heading_deg", .type = OPTION_FLOAT, .min = -360, .max = 360, .unit = "deg",
-	  .scale = RAD_PER_DEG, .standard = "0", AT(layout_file_wall, heading),
+	  .scale = LAYOUT_RAD_PER_DEG, .standard = "0", AT(layout_file_wall, heading),
 	  .help = "with center: where a person who faces the wall looks; 0 is the front (-Z), 90 the left (-X)" },
 	{ .key = "pitch_deg", .type = OPTION_FLOAT, .min = -180, .max = 180, .unit = "deg",
-	  .scale = RAD_PER_DEG, .standard = "0", AT(layout_file_wall, pitch),
+	  .scale = LAYOUT_RAD_PER_DEG, .standard = "0", AT(layout_file_wall, pitch),
 	  .help = "with center: how far up that person looks; -90 is the floor" },
 	{ .key = "roll_deg", .type = OPTION_FLOAT, .min = -180, .max = 180, .unit = "deg",
-	  .scale = RAD_PER_DEG, .standard = "0", AT(layout_file_wall, roll),
+	  .scale = LAYOUT_RAD_PER_DEG, .standard = "0", AT(layout_file_wall, roll),
 	  .help = "with center: turn in the wall's plane, counter-clockwise as seen" },
 	{ .key = "pixels", .type = OPTION_INT, .required = true, .count = 2, .min = 16,
 	  .max = 65536, .unit = "pixels", AT(layout_file_wall, pixels),
@@ -117,14 +112,14 @@ static const struct option rates_options[] = {
 	{ .key = "frame_hz", .type = OPTION_FLOAT, .min = 1, .max = 1000, .standard = "60",
 	  .unit = "Hz", AT(layout_file_rates, rates.frame_hz), .help = "frames a second at most" },
 	{ .key = "barrier_deadline_ms", .type = OPTION_TIME, .min = 1, .max = 60000,
-	  .standard = "50", .scale = NS_PER_MS, .unit = "ms",
+	  .standard = "50", .scale = LAYOUT_NS_PER_MS, .unit = "ms",
 	  AT(layout_file_rates, rates.barrier_deadline_ns),
 	  .help = "how long after a frame began the others swap without a late node" },
 	{ .key = "evict_frames", .type = OPTION_INT, .min = 1, .max = 1000, .standard = "3",
 	  .unit = "frames", AT(layout_file_rates, rates.evict_frames),
 	  .help = "frames that a node may miss in a row before it is left out" },
 	{ .key = "display_latency_ms", .type = OPTION_TIME, .min = 0, .max = 1000,
-	  .standard = "16.7", .scale = NS_PER_MS, .unit = "ms",
+	  .standard = "16.7", .scale = LAYOUT_NS_PER_MS, .unit = "ms",
 	  AT(layout_file_rates, rates.display_latency_ns),
 	  .help = "from the swap to light on the wall; heads are predicted to that time" },
 	{ .key = NULL },
@@ -138,7 +133,7 @@ static const struct option swap_options[] = {
 	  .unit = "frames", AT(layout_file_swap, swap.lead_most),
 	  .help = "how far ahead of its word the master may set a swap; it takes what the ways need" },
 	{ .key = "busy_poll_us", .type = OPTION_TIME, .min = 0, .max = 10000, .standard = "200",
-	  .scale = NS_PER_US, .unit = "us", AT(layout_file_swap, swap.busy_poll_ns),
+	  .scale = LAYOUT_NS_PER_US, .unit = "us", AT(layout_file_swap, swap.busy_poll_ns),
 	  .help = "before a swap's time in which a node does not sleep but looks at the clock" },
 	{ .key = "without_master", .type = OPTION_CHOICE, .choices = orphan_choices,
 	  .standard = "hold", AT(layout_file_swap, swap.orphan),
@@ -163,19 +158,19 @@ static const struct option start_options[] = {
 	{ .key = "head", .type = OPTION_FLOAT, .count = 3, .min = -100, .max = 100, .unit = "m",
 	  .standard = "0 1.7 0", AT(layout_file_start, head),
 	  .help = "midpoint between the eyes before a tracker speaks" },
-	START("head_heading_deg", "deg", 360, "0", RAD_PER_DEG, head_angles[0],
+	START("head_heading_deg", "deg", 360, "0", LAYOUT_RAD_PER_DEG, head_angles[0],
 	      "where the head looks; 0 is the front (-Z), 90 the left"),
-	START("head_pitch_deg", "deg", 90, "0", RAD_PER_DEG, head_angles[1],
+	START("head_pitch_deg", "deg", 90, "0", LAYOUT_RAD_PER_DEG, head_angles[1],
 	      "how far up the head looks"),
-	START("head_roll_deg", "deg", 180, "0", RAD_PER_DEG, head_angles[2],
+	START("head_roll_deg", "deg", 180, "0", LAYOUT_RAD_PER_DEG, head_angles[2],
 	      "how far the head leans to its left"),
 	{ .key = "wand", .type = OPTION_FLOAT, .count = 3, .min = -100, .max = 100, .unit = "m",
 	  .standard = "0.25 1.2 -0.35", AT(layout_file_start, wand),
 	  .help = "tip of the wand before a tracker speaks" },
-	START("wand_heading_deg", "deg", 360, "0", RAD_PER_DEG, wand_angles[0],
+	START("wand_heading_deg", "deg", 360, "0", LAYOUT_RAD_PER_DEG, wand_angles[0],
 	      "where the wand points, likewise"),
-	START("wand_pitch_deg", "deg", 90, "0", RAD_PER_DEG, wand_angles[1], "likewise"),
-	START("wand_roll_deg", "deg", 180, "0", RAD_PER_DEG, wand_angles[2], "likewise"),
+	START("wand_pitch_deg", "deg", 90, "0", LAYOUT_RAD_PER_DEG, wand_angles[1], "likewise"),
+	START("wand_roll_deg", "deg", 180, "0", LAYOUT_RAD_PER_DEG, wand_angles[2], "likewise"),
 	{ .key = NULL },
 };
 
@@ -185,53 +180,6 @@ static const struct option room_options[] = {
 	  .help = "the corner of the room with the smallest x, y and z" },
 	{ .key = "max", .type = OPTION_FLOAT, .count = 3, .min = -1000, .max = 1000, .unit = "m",
 	  .required = true, AT(layout_file_room, max), .help = "the corner opposite to min" },
-	{ .key = NULL },
-};
-
-static const struct option sim_options[] = {
-	{ .key = "rate_hz", .type = OPTION_FLOAT, .min = 1, .max = 1000, .standard = "120",
-	  .unit = "Hz", AT(layout_file_sim, sim.rate_hz), .help = "samples a second and body" },
-	{ .key = "noise_position_m", .type = OPTION_FLOAT, .min = 0, .max = 0.1, .standard = "0",
-	  .unit = "m", AT(layout_file_sim, sim.noise_position_m),
-	  .help = "standard deviation of the position" },
-	{ .key = "noise_angle_deg", .type = OPTION_FLOAT, .min = 0, .max = 10, .standard = "0",
-	  .scale = RAD_PER_DEG, .unit = "deg", AT(layout_file_sim, sim.noise_angle_rad),
-	  .help = "standard deviation of the orientation" },
-	{ .key = "latency_ms", .type = OPTION_TIME, .min = 0, .max = 1000, .standard = "0",
-	  .scale = NS_PER_MS, .unit = "ms", AT(layout_file_sim, sim.latency_ns),
-	  .help = "age of a sample when it arrives" },
-	{ .key = "dropout_per_s", .type = OPTION_FLOAT, .min = 0, .max = 100, .standard = "0",
-	  .unit = "1/s", AT(layout_file_sim, sim.dropout_per_s),
-	  .help = "mean number of drop-outs a second" },
-	{ .key = "dropout_ms", .type = OPTION_TIME, .min = 0, .max = 60000, .standard = "100",
-	  .scale = NS_PER_MS, .unit = "ms", AT(layout_file_sim, sim.dropout_ns),
-	  .help = "length of a drop-out" },
-	{ .key = "seed", .type = OPTION_U32, .min = 0, .max = 4294967295.0, .standard = "1",
-	  AT(layout_file_sim, sim.seed), .help = "the same seed gives the same visitor" },
-	{ .key = "walk_radius_m", .type = OPTION_FLOAT, .min = 0, .max = 10, .standard = "0.5",
-	  .unit = "m", AT(layout_file_sim, sim.walk_radius_m),
-	  .help = "how far from the start pose the visitor walks" },
-	{ .key = "walk_speed_m_s", .type = OPTION_FLOAT, .min = 0, .max = 3, .standard = "0.5",
-	  .unit = "m/s", AT(layout_file_sim, sim.walk_speed_m_s), .help = "how fast the visitor walks" },
-	{ .key = NULL },
-};
-
-static const struct option tracker_options[] = {
-	{ .key = "name", .type = OPTION_NAME, .required = true,
-	  AT(layout_file_tracker, tracker.name), .help = "the tracker's name in logs and status" },
-	{ .key = "kind", .type = OPTION_CHOICE, .required = true, .choices = tracker_choices,
-	  AT(layout_file_tracker, tracker.kind),
-	  .help = "the kind of device: a simulated visitor, or a log that is replayed" },
-	{ .key = "head", .type = OPTION_BOOL, .standard = "true",
-	  AT(layout_file_tracker, tracker.head), .help = "whether it tracks the head" },
-	{ .key = "wand", .type = OPTION_BOOL, .standard = "true",
-	  AT(layout_file_tracker, tracker.wand), .help = "whether it tracks the wand" },
-	{ .key = "file", .type = OPTION_STRING, AT(layout_file_tracker, tracker.file),
-	  .help = "for replay: the log, absolute or beside the layout file" },
-	{ .key = "loop", .type = OPTION_BOOL, .standard = "true",
-	  AT(layout_file_tracker, tracker.loop), .help = "for replay: begin again at the end" },
-	{ .key = "sim", .type = OPTION_GROUP, AT(layout_file_tracker, sim), .group = sim_options,
-	  .help = "for sim: what the simulated visitor does" },
 	{ .key = NULL },
 };
 
@@ -262,7 +210,7 @@ const struct option layout_options[] = {
 	  .help = "where eyes may be; without it the box around the walls" },
 	{ .key = "trackers", .type = OPTION_LIST, .count = LAYOUT_MAX_TRACKERS,
 	  AT(layout_file, trackers), .size = sizeof(struct layout_file_tracker),
-	  .count_offset = offsetof(struct layout_file, tracker_count), .group = tracker_options,
+	  .count_offset = offsetof(struct layout_file, tracker_count), .group = layout_tracker_options,
 	  .help = "the list of trackers; without one the head stays at its start" },
 	{ .key = NULL },
 };

@@ -70,10 +70,24 @@ struct layout_file_sim {
 	struct layout_sim sim;
 };
 
+struct layout_file_base {
+	const config_setting_t *at;
+	struct layout_frame room_base;
+	float scale;
+};
+
+struct layout_file_binding {
+	const config_setting_t *at;
+	struct layout_binding binding;
+};
+
 struct layout_file_tracker {
 	const config_setting_t *at;
 	struct layout_tracker tracker;
 	struct layout_file_sim sim;
+	struct layout_file_base base;
+	struct layout_file_binding *bindings;
+	size_t binding_count;
 };
 
 struct layout_file {
@@ -94,5 +108,20 @@ struct layout_file {
 };
 
 extern const struct option layout_options[];
+extern const struct option layout_tracker_options[];
+
+/* Factors from the files' units to ours. */
+#define LAYOUT_RAD_PER_DEG 0.017453292519943295
+#define LAYOUT_NS_PER_MS 1e6
+#define LAYOUT_NS_PER_US 1e3
+
+/* One group of `trackers` as a tracker; strings move over. */
+void layout_tracker_build(struct layout_tracker *out, struct layout_file_tracker *from);
+void layout_tracker_free(struct layout_tracker *tracker);
+/* The other way, for writing; strings are borrowed. bindings: room for the tracker's. */
+void layout_tracker_fill(struct layout_file_tracker *out, const struct layout_tracker *from,
+			 struct layout_file_binding bindings[LAYOUT_MAX_BINDINGS]);
+/* heading about +Y, then pitch about the turned X, then roll about the line of sight. */
+void layout_pose_from_angles(const vec3 position, const vec3 angles, struct gr_pose *out);
 
 #endif

@@ -44,9 +44,11 @@ int layout_write(FILE *file, const struct layout *layout)
 	struct layout_file_wall *walls = calloc(layout->wall_count + 1, sizeof *walls);
 	struct layout_file_node *nodes = calloc(layout->node_count + 1, sizeof *nodes);
 	struct layout_file_tracker *trackers = calloc(layout->tracker_count + 1, sizeof *trackers);
+	struct layout_file_binding *bindings =
+		calloc(layout->tracker_count * LAYOUT_MAX_BINDINGS + 1, sizeof *bindings);
 	int result = GR_ERR_NOMEM;
 
-	if (!walls || !nodes || !trackers)
+	if (!walls || !nodes || !trackers || !bindings)
 		goto out;
 	memcpy(form.name, layout->name, sizeof form.name);
 	form.eye_separation_m = layout->eye_separation_m;
@@ -69,17 +71,14 @@ int layout_write(FILE *file, const struct layout *layout)
 		form.room.min[0] = NAN;
 	form.trackers = trackers;
 	form.tracker_count = layout->tracker_count;
-	for (size_t i = 0; i < layout->tracker_count; i++) {
-		trackers[i].tracker = layout->trackers[i];
-		trackers[i].sim.sim = layout->trackers[i].sim;
-		if (layout->trackers[i].kind != LAYOUT_TRACKER_SIM)
-			trackers[i].sim.sim.rate_hz = NAN;
-	}
+	for (size_t i = 0; i < layout->tracker_count; i++)
+		layout_tracker_fill(&trackers[i], &layout->trackers[i], bindings + i * LAYOUT_MAX_BINDINGS);
 	options_write(file, layout_options, &form);
 	result = fflush(file) || ferror(file) ? GR_ERR_IO : GR_OK;
 out:
 	free(walls);
 	free(nodes);
 	free(trackers);
+	free(bindings);
 	return result;
 }

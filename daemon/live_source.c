@@ -20,7 +20,7 @@ static int next(struct frame_source *source, const struct frame_moment *moment,
 	const int64_t time_ns = frame_time(live, frame, moment->now_ns);
 
 	live->polled_ns = moment->now_ns;
-	trackers_poll(live->trackers, time_ns);
+	trackers_poll(live->trackers, time_ns, moment->now_ns);
 	trackers_sample(live->trackers,
 			time_ns + moment->to_swap_ns + live->layout->rates.display_latency_ns,
 			&live->input);

@@ -25,7 +25,10 @@ daemon_libgdaemon_a_SOURCES = \
 	daemon/socket.c daemon/socket.h \
 	daemon/state_keeper.c daemon/state_keeper.h \
 	daemon/swap_wait.c daemon/swap_wait.h \
-	daemon/trackers.c daemon/trackers.h
+	daemon/tracker_devices.c daemon/tracker_devices.h \
+	daemon/tracker_stats.c daemon/tracker_stats.h \
+	daemon/trackers.c daemon/trackers.h \
+	daemon/trackers_report.c
 daemon_libgdaemon_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(LIBCONFIG_CFLAGS) $(SYSTEMD_CFLAGS)
 
 DAEMON_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(SODIUM_CFLAGS) $(SYSTEMD_CFLAGS) -pthread

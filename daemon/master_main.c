@@ -1,6 +1,6 @@
 /*
- * grotto-master: reads and checks everything, opens ports and trackers, gives
- * up privileges, says READY, and runs the room until it is told to end.
+ * grotto-master: reads and checks everything, opens ports, gives up
+ * privileges, starts trackers, says READY, and runs the room until it is told to end.
  */
 #include "config.h" /* asprintf */
 
@@ -191,6 +191,8 @@ static int open_all(struct opened *o, const struct master_options *options)
 		priority_take(options->common.priority);
 	if (r >= 0)
 		r = privileges_drop(options->common.user, path);
+	if (r >= 0)
+		r = trackers_start(&o->trackers);
 	/* Root could write it; can who is left? */
 	if (r >= 0 && options->common.report && json_try(options->common.report) < 0)
 		r = GR_ERR_CONFIG;

@@ -171,7 +171,7 @@ static void write_frames(struct json *json, const struct master *m)
 	write_histogram(json, "swap_sent_to_last_swap_us", &m->stats.swap_to_last);
 }
 
-static void write_tracking(struct json *json, const struct master *m)
+static void write_tracking(struct json *json, const struct master *m, int64_t now_ns)
 {
 	const struct live_source *live = m->params.live;
 	const struct gr_pose *head = &live->input.head.T_room_body;
@@ -184,6 +184,7 @@ static void write_tracking(struct json *json, const struct master *m)
 	for (int i = 0; i < 3; i++)
 		json_f64(json, NULL, (double)head->p[i]);
 	json_close(json, ']');
+	trackers_write_json(live->trackers, json, "trackers", now_ns);
 	json_close(json, '}');
 }
 
@@ -252,7 +253,7 @@ int master_write_json(const struct master *m, int64_t now_ns, char *text, size_t
 	write_share(&json, m);
 	write_wire(&json, m);
 	if (m->params.live) {
-		write_tracking(&json, m);
+		write_tracking(&json, m, now_ns);
 		write_settings(&json, m);
 	}
 	if (m->params.replay)

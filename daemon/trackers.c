@@ -1,10 +1,13 @@
 #include "daemon/trackers.h"
 
+#include "base/log.h"
 #include "base/result.h"
 #include "config/config_text.h"
+#include "daemon/tracker_devices.h"
 #include "tracking/replay.h"
 #include "tracking/sim.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -45,63 +48,161 @@ static int open_replay(struct track_source **out, const struct layout *layout,
 	return r;
 }
 
+static int open_device(struct tracker *out, const struct layout *layout,
+		       const struct layout_tracker *tracker, struct gr_diag *diag)
+{
+	int r = tracker_device_create(&out->device, layout, tracker, diag);
+
+	return r < 0 ? r : tracker_bindings(out->bindings, layout, tracker, out->device->ops, diag);
+}
+
+static int open_one(struct tracker *out, const struct layout *layout,
+		    const struct layout_tracker *tracker, struct gr_diag *diag)
+{
+	out->of = tracker;
+	tracker_stats_init(&out->stats);
+	switch (tracker->kind) {
+	case LAYOUT_TRACKER_SIM: return open_sim(&out->source, layout, tracker, diag);
+	case LAYOUT_TRACKER_REPLAY: return open_replay(&out->source, layout, tracker, diag);
+	default: return open_device(out, layout, tracker, diag);
+	}
+}
+
+/* What all devices together give of each body. */
+static void init_bodies(struct trackers *trackers)
+{
+	const struct layout *layout = trackers->layout;
+	unsigned parts[TRACK_BODIES] = { 0 };
+
+	for (size_t i = 0; i < trackers->count; i++)
+		for (size_t k = 0; k < trackers->all[i].of->binding_count; k++)
+			parts[trackers->all[i].bindings[k].body] |=
+				trackers->all[i].bindings[k].parts;
+	track_assembly_init(&trackers->bodies[TRACK_HEAD], &layout->start_head, parts[TRACK_HEAD]);
+	track_assembly_init(&trackers->bodies[TRACK_WAND], &layout->start_wand, parts[TRACK_WAND]);
+}
+
 int trackers_open(struct trackers *out, const struct layout *layout, struct gr_diag *diag)
 {
+	int r = GR_OK;
+
 	memset(out, 0, sizeof *out);
 	out->layout = layout;
 	track_history_init(&out->history);
-	for (size_t i = 0; i < layout->tracker_count; i++) {
-		const struct layout_tracker *tracker = &layout->trackers[i];
-		int r;
-
+	for (size_t i = 0; i < layout->tracker_count && r >= 0; i++) {
 		if (out->count == TRACKERS_MAX) {
-			gr_diag_add(diag, GR_DIAG_ERROR, layout->path, tracker->line, tracker->name,
-				    "too many trackers; at most %d", TRACKERS_MAX);
-			trackers_close(out);
-			return GR_ERR_CONFIG;
+			gr_diag_add(diag, GR_DIAG_ERROR, layout->path, layout->trackers[i].line,
+				    layout->trackers[i].name, "too many trackers; at most %d",
+				    TRACKERS_MAX);
+			r = GR_ERR_CONFIG;
+			break;
 		}
-		r = tracker->kind == LAYOUT_TRACKER_SIM ?
-			    open_sim(&out->sources[out->count], layout, tracker, diag) :
-			    open_replay(&out->sources[out->count], layout, tracker, diag);
-		if (r < 0) {
-			trackers_close(out);
-			return r;
+		r = open_one(&out->all[out->count++], layout, &layout->trackers[i], diag);
+	}
+	if (r < 0)
+		trackers_close(out);
+	else
+		init_bodies(out);
+	return r < 0 ? r : GR_OK;
+}
+
+int trackers_start(struct trackers *trackers)
+{
+	for (size_t i = 0; i < trackers->count; i++) {
+		struct tracker *t = &trackers->all[i];
+
+		if (t->device && track_device_start(t->device) < 0) {
+			gr_error("tracker %s: no thread: %s", t->of->name, strerror(errno));
+			return GR_ERR_IO;
 		}
-		out->of[out->count++] = tracker;
 	}
 	return GR_OK;
 }
 
 void trackers_close(struct trackers *trackers)
 {
-	for (size_t i = 0; i < trackers->count; i++)
-		track_source_destroy(&trackers->sources[i]);
+	for (size_t i = 0; i < trackers->count; i++) {
+		track_source_destroy(&trackers->all[i].source);
+		track_device_destroy(&trackers->all[i].device);
+	}
 	trackers->count = 0;
 }
 
 static void take(struct trackers *trackers, size_t i, const struct track_sample *sample,
 		 int64_t now_ns)
 {
-	const struct layout_tracker *tracker = trackers->of[i];
+	const struct layout_tracker *tracker = trackers->all[i].of;
 	const bool wanted = sample->body == TRACK_HEAD ? tracker->head : tracker->wand;
 	const bool taken = wanted && track_history_add(&trackers->history, sample, now_ns) == GR_OK;
 
+	tracker_stats_sample(&trackers->all[i].stats, sample->body, sample->valid);
 	if (trackers->tap.sample)
 		trackers->tap.sample(trackers->tap.ctx, i, sample, taken);
 }
 
-void trackers_poll(struct trackers *trackers, int64_t now_ns)
+static void poll_source(struct trackers *trackers, size_t i, int64_t now_ns, int64_t monotonic_ns)
 {
+	struct tracker *t = &trackers->all[i];
 	struct track_sample samples[POLL_BATCH];
 
-	for (size_t i = 0; i < trackers->count; i++) {
-		for (int round = 0; round < POLL_ROUNDS; round++) {
-			int n = track_poll(trackers->sources[i], now_ns, samples, POLL_BATCH);
-			for (int k = 0; k < n; k++)
-				take(trackers, i, &samples[k], now_ns);
-			if (n < POLL_BATCH)
-				break;
+	for (int round = 0; round < POLL_ROUNDS; round++) {
+		int n = track_poll(t->source, now_ns, samples, POLL_BATCH);
+
+		for (int k = 0; k < n; k++) {
+			tracker_stats_heard(&t->stats, monotonic_ns);
+			take(trackers, i, &samples[k], now_ns);
 		}
+		if (n < POLL_BATCH)
+			break;
+	}
+}
+
+/* A report of a sensor, to all that is bound to that sensor. */
+static void take_report(struct trackers *trackers, size_t i, const struct track_report *report,
+			int64_t now_ns)
+{
+	struct tracker *t = &trackers->all[i];
+	struct track_sample sample;
+
+	tracker_stats_heard(&t->stats, report->arrived_ns);
+	if (report->has & TRACK_BATTERY)
+		t->stats.battery = report->battery;
+	for (size_t k = 0; k < t->of->binding_count; k++) {
+		struct track_binding *binding = &t->bindings[k];
+
+		if (binding->sensor == report->sensor &&
+		    track_bind(binding, &trackers->bodies[binding->body], report, &sample))
+			take(trackers, i, &sample, now_ns);
+	}
+}
+
+static void poll_device(struct trackers *trackers, size_t i, int64_t now_ns, int64_t monotonic_ns)
+{
+	struct tracker *t = &trackers->all[i];
+	struct track_report reports[POLL_BATCH];
+
+	for (int round = 0; round < POLL_ROUNDS; round++) {
+		int n = track_device_take(t->device, &t->reader, reports, POLL_BATCH);
+
+		for (int k = 0; k < n; k++) {
+			struct track_report on_scale = reports[k];
+
+			on_scale.time_ns += now_ns - monotonic_ns;
+			take_report(trackers, i, &on_scale, now_ns);
+		}
+		if (n < POLL_BATCH)
+			break;
+	}
+}
+
+void trackers_poll(struct trackers *trackers, int64_t now_ns, int64_t monotonic_ns)
+{
+	for (size_t i = 0; i < trackers->count; i++) {
+		if (trackers->all[i].device)
+			poll_device(trackers, i, now_ns, monotonic_ns);
+		else
+			poll_source(trackers, i, now_ns, monotonic_ns);
+		tracker_stats_tick(&trackers->all[i].stats, monotonic_ns);
 	}
 }
 
@@ -123,8 +224,7 @@ static void sample_body(const struct trackers *trackers, enum track_body body, i
 		*buttons = tracked ? sample.buttons : 0;
 }
 
-void trackers_sample(const struct trackers *trackers, int64_t photon_ns,
-		     struct master_input *input)
+void trackers_sample(const struct trackers *trackers, int64_t photon_ns, struct master_input *input)
 {
 	sample_body(trackers, TRACK_HEAD, photon_ns, &input->head, NULL);
 	sample_body(trackers, TRACK_WAND, photon_ns, &input->wand, &input->buttons);

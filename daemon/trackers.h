@@ -10,7 +10,11 @@
 #define GROTTO_DAEMON_TRACKERS_H
 
 #include "config/layout.h"
+#include "daemon/json.h"
 #include "daemon/master_state.h"
+#include "daemon/tracker_stats.h"
+#include "tracking/bind.h"
+#include "tracking/device.h"
 #include "tracking/source.h"
 
 #define TRACKERS_MAX 8
@@ -23,22 +27,44 @@ struct trackers_tap {
 	void *ctx;
 };
 
+/* One tracker of the layout: a source of samples, or a device with bindings. */
+struct tracker {
+	const struct layout_tracker *of;
+	struct track_source *source;
+	struct track_device *device;
+	struct track_reader reader;
+	struct track_binding bindings[LAYOUT_MAX_BINDINGS];
+	struct tracker_stats stats;
+};
+
 struct trackers {
 	const struct layout *layout;
 	struct trackers_tap tap; /* sample may be NULL */
-	struct track_source *sources[TRACKERS_MAX];
-	const struct layout_tracker *of[TRACKERS_MAX];
+	struct tracker all[TRACKERS_MAX];
 	size_t count;
+	struct track_assembly bodies[TRACK_BODIES];
 	struct track_history history;
 };
 
-/* Faults go to diag. The layout must outlive the trackers. */
+/*
+ * Checks and makes ready; opens no device. Faults go to diag. The layout must
+ * outlive the trackers.
+ */
 int trackers_open(struct trackers *out, const struct layout *layout, struct gr_diag *diag);
+/* Starts the devices' threads: after privileges were given up, so that they open as whom they run.
+ */
+int trackers_start(struct trackers *trackers);
 void trackers_close(struct trackers *trackers);
-/* Takes what the devices have at now_ns. Never blocks. */
-void trackers_poll(struct trackers *trackers, int64_t now_ns);
+/*
+ * Takes what the devices have at now_ns, which is monotonic_ns on
+ * CLOCK_MONOTONIC. Never blocks.
+ */
+void trackers_poll(struct trackers *trackers, int64_t now_ns, int64_t monotonic_ns);
 /* Head, wand and buttons at photon_ns into `input`; a body never seen keeps its pose there. */
 void trackers_sample(const struct trackers *trackers, int64_t photon_ns,
 		     struct master_input *input);
+/* An array: for each tracker its state, rate, age, drop-outs, faults. */
+void trackers_write_json(const struct trackers *trackers, struct json *json, const char *key,
+			 int64_t monotonic_ns);
 
 #endif

@@ -37,7 +37,7 @@ int main(int argc, char **argv)
 		const double time_s = value_at(line, 1);
 		struct gr_pose truth;
 
-		track_sim_truth(trackers.sources[0], TRACK_HEAD, llrint(time_s * 1e9), &truth);
+		track_sim_truth(trackers.all[0].source, TRACK_HEAD, llrint(time_s * 1e9), &truth);
 		for (int i = 0; i < 3; i++)
 			worst = fmax(worst, fabs(value_at(line, 5 + i) - (double)truth.p[i]));
 		if (!(time_s > last))

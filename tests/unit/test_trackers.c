@@ -72,7 +72,7 @@ static void nobody_is_at_the_start_pose(void **state)
 	struct fixture *f = *state;
 
 	assert_int_equal(trackers_open(&f->open, &f->layout, &f->diag), GR_OK);
-	trackers_poll(&f->open, 0);
+	trackers_poll(&f->open, 0, 0);
 	trackers_sample(&f->open, PERIOD_NS, &f->input);
 	assert_false(f->input.head.tracked);
 	assert_memory_equal(&f->input.head.T_room_body, &f->layout.start_head, sizeof(struct gr_pose));
@@ -92,9 +92,9 @@ static void simulated_visitor_is_a_function_of_time(void **state)
 		struct master_input other = f->input;
 		int64_t now_ns = frame * PERIOD_NS;
 
-		trackers_poll(&f->open, now_ns);
+		trackers_poll(&f->open, now_ns, now_ns);
 		trackers_sample(&f->open, now_ns + PERIOD_NS, &f->input);
-		trackers_poll(&second, now_ns);
+		trackers_poll(&second, now_ns, now_ns);
 		trackers_sample(&second, now_ns + PERIOD_NS, &other);
 		assert_memory_equal(&f->input, &other, sizeof other);
 		assert_true(gr_pose_valid(&f->input.head.T_room_body));
@@ -123,12 +123,12 @@ static void replay_is_beside_the_layout(void **state)
 	t->head = t->wand = true;
 	t->file = (char *)"walk.log";
 	assert_int_equal(trackers_open(&f->open, &f->layout, &f->diag), GR_OK);
-	trackers_poll(&f->open, 0);
-	trackers_poll(&f->open, 20 * GR_NS_PER_MS);
+	trackers_poll(&f->open, 0, 0);
+	trackers_poll(&f->open, 20 * GR_NS_PER_MS, 20 * GR_NS_PER_MS);
 	trackers_sample(&f->open, 20 * GR_NS_PER_MS, &f->input);
 	assert_true(f->input.wand.tracked);
 	assert_int_equal(f->input.buttons, 2);
-	trackers_poll(&f->open, 110 * GR_NS_PER_MS);
+	trackers_poll(&f->open, 110 * GR_NS_PER_MS, 110 * GR_NS_PER_MS);
 	trackers_sample(&f->open, 50 * GR_NS_PER_MS, &f->input);
 	assert_float_equal(f->input.head.T_room_body.p[0], 0.1f, 1e-5f);
 	/* The wand is lost: it holds no button down, whatever it held last. */

@@ -1,0 +1,91 @@
+#include "daemon/tracker_devices.h"
+
+#include "base/clock.h"
+#include "base/result.h"
+#include "tracking/hydra.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static int create_hydra(struct track_device **out, const struct layout_tracker *tracker)
+{
+	const struct track_hydra_params params = {
+		.serial = tracker->serial,
+		.number = tracker->number,
+	};
+
+	return track_hydra_create(out, &params, &gr_clock_monotonic);
+}
+
+/* Indexed by kind. */
+static int (*const create[])(struct track_device **, const struct layout_tracker *) = {
+	[LAYOUT_TRACKER_HYDRA] = create_hydra,
+};
+
+int tracker_device_create(struct track_device **out, const struct layout *layout,
+			  const struct layout_tracker *tracker, struct gr_diag *diag)
+{
+	int r = create[tracker->kind](out, tracker);
+
+	if (r < 0)
+		gr_diag_add(diag, GR_DIAG_ERROR, layout->path, tracker->line, tracker->name,
+			    "cannot be made ready: %s", gr_result_name(r));
+	return r;
+}
+
+static void list(char *text, size_t size, const char *const *names)
+{
+	size_t len = 0;
+
+	for (int i = 0; names[i] && len < size; i++)
+		len += (size_t)snprintf(text + len, size - len, "%s%s", i ? ", " : "", names[i]);
+}
+
+static int bind_one(struct track_binding *out, const struct layout *layout,
+		    const struct layout_tracker *tracker, const struct layout_binding *from,
+		    const struct track_device_ops *ops, struct gr_diag *diag)
+{
+	const struct track_names names = { ops->buttons, ops->axes };
+	const struct track_place buttons = { layout->path, "buttons", from->line };
+	const struct track_place axes = { layout->path, "axes", from->line };
+	const int sensor =
+		from->sensor[0] ? track_name_index(ops->sensors, from->sensor, strlen(from->sensor))
+				: 0;
+	char known[400] = "";
+	int r;
+
+	*out = (struct track_binding){
+		.body = from->body == LAYOUT_HEAD ? TRACK_HEAD : TRACK_WAND,
+		.sensor = (unsigned)sensor,
+		.parts = (from->position ? TRACK_PART_POSITION : 0u) |
+			 (from->orientation ? TRACK_PART_ORIENTATION : 0u) |
+			 (from->input && from->body == LAYOUT_WAND ? TRACK_PART_INPUT : 0u),
+		.T_room_base = tracker->room_base.pose,
+		.scale = tracker->scale,
+		.T_sensor_body = from->sensor_body.pose,
+		.latency_ns = tracker->latency_ns,
+	};
+	if (sensor < 0) {
+		list(known, sizeof known, ops->sensors);
+		gr_diag_add(diag, GR_DIAG_ERROR, layout->path, from->line, "sensor",
+			    "\"%s\" is no sensor of a %s; it has %s", from->sensor, ops->kind,
+			    known);
+		return GR_ERR_CONFIG;
+	}
+	r = track_bind_buttons(out, &names, from->buttons, &buttons, diag);
+	if (track_bind_axes(out, &names, from->axes, &axes, diag) < 0)
+		r = GR_ERR_CONFIG;
+	return r;
+}
+
+int tracker_bindings(struct track_binding *out, const struct layout *layout,
+		     const struct layout_tracker *tracker, const struct track_device_ops *ops,
+		     struct gr_diag *diag)
+{
+	int result = GR_OK;
+
+	for (size_t i = 0; i < tracker->binding_count; i++)
+		if (bind_one(&out[i], layout, tracker, &tracker->bindings[i], ops, diag) < 0)
+			result = GR_ERR_CONFIG;
+	return result;
+}
