@@ -35,7 +35,7 @@ tests_fuzz_fuzz_film_SOURCES = tests/fuzz/fuzz_film.c
 tests_fuzz_fuzz_film_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS)
 tests_fuzz_fuzz_film_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
 tests_fuzz_fuzz_film_LDADD = $(RENDERER_LIBS)
-EXTRA_DIST += tests/fuzz/corpus/film/huge-sums.film tests/fuzz/corpus/film/two-pixels.film
+EXTRA_DIST += tests/fuzz/corpus/film/denormal-mean.film tests/fuzz/corpus/film/huge-sums.film tests/fuzz/corpus/film/two-pixels.film
 
 dist_check_SCRIPTS += tests/command/reference.sh
 TESTS += tests/command/reference.sh

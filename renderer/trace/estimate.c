@@ -54,7 +54,8 @@ double estimate_relative_error(const struct estimate_sums *sums)
 		return (double)sums->samples * (double)sums->items >= ESTIMATE_BLACK_SAMPLES ? 0.0 : -1.0;
 	if (!(mean > 0.0))
 		return -1.0;
-	return sqrt(variance / (3.0 * (double)sums->items)) / (mean / (3.0 * (double)sums->items));
+	/* root of the mean variance over the mean; a mean that is a denormal is not divided first */
+	return sqrt(variance * 3.0 * (double)sums->items) / mean;
 }
 
 /* One set of one item. */
