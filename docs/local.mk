@@ -12,5 +12,5 @@ dist_doc_DATA += docs/bench.md docs/bench-box.svg docs/bench-box-closed.svg docs
 	docs/bench-cornell-spot.svg docs/bench-grotto.svg docs/bench-sponza.svg
 dist_doc_DATA += docs/view.md
 dist_doc_DATA += docs/results.md docs/goals.md docs/demo-room.png
-dist_doc_DATA += docs/comparing.md
+dist_doc_DATA += docs/comparing.md docs/delivery.md
 dist_doc_DATA += docs/baking.md docs/hard-cases.md

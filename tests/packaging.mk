@@ -12,7 +12,7 @@ LINT_FLAGS = -std=gnu17 $(DEFS) $(DEFAULT_INCLUDES) $(AM_CPPFLAGS) \
 	$(CGLM_CFLAGS) $(LIBCONFIG_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS) \
 	$(SYSTEMD_CFLAGS) $(EPOXY_CFLAGS) $(GLFW_CFLAGS) $(ASSIMP_CFLAGS) \
 	$(HIDAPI_CFLAGS) $(LIBUSB_CFLAGS) $(UDEV_CFLAGS) $(UMOCKDEV_CFLAGS) \
-	$(OPENEXR_CFLAGS) $(PNG_CFLAGS) $(JPEG_CFLAGS) $(JSONC_CFLAGS) \
+	$(OPENEXR_CFLAGS) $(PNG_CFLAGS) $(JPEG_CFLAGS) $(JSONC_CFLAGS) $(PEER_CFLAGS) \
 	-DGROTTO_SBINDIR='"$(sbindir)"' -DGROTTO_PKGLIBEXECDIR='"$(pkglibexecdir)"'
 clang-tidy cppcheck: $(BUILT_SOURCES)
 	$(AM_V_GEN)$(top_srcdir)/scripts/lint $@ $(top_srcdir) $(LINT_FLAGS)
@@ -22,4 +22,4 @@ EXTRA_DIST += \
 	.clang-format .clang-tidy .editorconfig .ci/run \
 	scripts/check scripts/count.sh scripts/cppcheck.supp scripts/demo \
 	scripts/lib.sh scripts/lint scripts/results scripts/lsan.supp \
-	scripts/packages scripts/packages.check
+	scripts/packages scripts/packages.bench scripts/packages.check

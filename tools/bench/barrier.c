@@ -127,7 +127,7 @@ static const struct cluster_bench bench = {
 	.usage = "grotto bench barrier [--nodes N] [--rate HZ] [--frames N] [--runs N] [--loopback 1] [--multicast 1]",
 	.summary = "How far apart nodes that draw nothing leave the swap barrier, told and at a time, in\n"
 		   "turns; in network namespaces where that is allowed, else over loopback.",
-	.samples = "frames", .samples_most = BARRIER_FRAMES_MOST,
+	.samples = "frames", .samples_most = BARRIER_FRAMES_MOST, .nodes_least = 2,
 	.port = 29100, .group = "239.192.77.1", .network = "10.99.0",
 	.measure = measure, .run = run_end,
 };
@@ -154,5 +154,7 @@ static int measure(const struct cluster_options *o)
 
 int main(int argc, char **argv)
 {
-	return cluster_main(&bench, argc, argv);
+	struct cluster_options options = CLUSTER_DEFAULTS;
+
+	return cluster_main(&bench, &options, argc, argv);
 }

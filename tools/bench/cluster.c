@@ -8,7 +8,6 @@
 #include "daemon/priority.h"
 #include "tools/bench/cluster_net.h"
 #include "tools/bench/stats.h"
-#include "tools/cli.h"
 
 #include <math.h>
 #include <sched.h>
@@ -20,19 +19,32 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-int cluster_main(const struct cluster_bench *bench, int argc, char **argv)
+#define OPTIONS_MOST 12
+
+/* The bench's own behind those that all have. */
+static size_t list_options(const struct cluster_bench *bench, struct cluster_options *o,
+			   struct cli_option list[OPTIONS_MOST])
 {
-	struct cluster_options o = { .nodes = 4, .hz = 120, .samples = 600, .runs = 5 };
-	const struct cli_option options[] = {
-		{ "nodes", 0, CLI_INT, &o.nodes, 2, CLUSTER_NODES_MOST, "N", "beside the master (4)" },
-		{ "rate", 0, CLI_INT, &o.hz, 1, 1000, "HZ", "so many a second (120)" },
-		{ bench->samples, 0, CLI_INT, &o.samples, 10, bench->samples_most, "N", "in a run (600)" },
-		{ "runs", 0, CLI_INT, &o.runs, 1, CLUSTER_RUNS_MOST, "N", "of each kind (5)" },
-		{ "loopback", 0, CLI_INT, &o.loopback, 0, 1, "0|1", "never network namespaces (0)" },
-		{ "multicast", 0, CLI_INT, &o.multicast, 0, 1, "0|1", "from the master to a group (0)" },
+	const struct cli_option shared[] = {
+		{ "nodes", 0, CLI_INT, &o->nodes, bench->nodes_least, CLUSTER_NODES_MOST, "N", "beside the master (4)" },
+		{ "rate", 0, CLI_INT, &o->hz, 1, 1000, "HZ", "so many a second (120)" },
+		{ bench->samples, 0, CLI_INT, &o->samples, 10, bench->samples_most, "N", "in a run (600)" },
+		{ "runs", 0, CLI_INT, &o->runs, 1, CLUSTER_RUNS_MOST, "N", "of each kind (5)" },
+		{ "loopback", 0, CLI_INT, &o->loopback, 0, 1, "0|1", "never network namespaces (0)" },
+		{ "multicast", 0, CLI_INT, &o->multicast, 0, 1, "0|1", "from the master to a group (0)" },
 	};
-	const struct cli_table table = { bench->usage, bench->summary, options,
-					 sizeof options / sizeof options[0] };
+	size_t count = sizeof shared / sizeof *shared;
+
+	memcpy(list, shared, sizeof shared);
+	for (size_t i = 0; i < bench->option_count && count < OPTIONS_MOST; i++)
+		list[count++] = bench->options[i];
+	return count;
+}
+
+int cluster_main(const struct cluster_bench *bench, struct cluster_options *o, int argc, char **argv)
+{
+	struct cli_option list[OPTIONS_MOST];
+	const struct cli_table table = { bench->usage, bench->summary, list, list_options(bench, o, list) };
 	int words;
 
 	gr_log_init(bench->name, GR_LOG_WARNING);
@@ -40,7 +52,7 @@ int cluster_main(const struct cluster_bench *bench, int argc, char **argv)
 	case CLI_HELP: return GR_EXIT_OK;
 	case CLI_RUN:
 		if (!words)
-			return bench->measure(&o);
+			return bench->measure(o);
 		fprintf(stderr, "'%s' is no option\n", argv[1]);
 		break;
 	case CLI_WRONG: break;
@@ -159,6 +171,23 @@ static bool begin_processes(struct bench_cluster *c)
 	return true;
 }
 
+/* An end that died comes to no barrier: all others, and this, would wait for ever. */
+static void end_died(int signal)
+{
+	static const char text[] = "an end died\n";
+
+	(void)signal;
+	(void)!write(STDERR_FILENO, text, sizeof text - 1);
+	_exit(GR_EXIT_RUNTIME);
+}
+
+static void watch_ends(bool on)
+{
+	const struct sigaction action = { .sa_handler = on ? end_died : SIG_DFL, .sa_flags = SA_NOCLDSTOP };
+
+	sigaction(SIGCHLD, &action, NULL);
+}
+
 bool cluster_begin(struct bench_cluster *cluster, const struct cluster_bench *bench,
 		   const struct cluster_options *options, void *room)
 {
@@ -180,6 +209,7 @@ bool cluster_begin(struct bench_cluster *cluster, const struct cluster_bench *be
 	for (unsigned i = 0; cluster->spaces && i <= cluster->node_count; i++)
 		if (!cluster_net_connect(i, cluster->ends[i]))
 			atomic_store(&cluster->failed, true);
+	watch_ends(true);
 	step(cluster);
 	return true;
 }
@@ -210,6 +240,7 @@ void cluster_end(struct bench_cluster *cluster)
 	const bool failed = atomic_load(&cluster->failed);
 
 	cluster->done = true;
+	watch_ends(false);
 	if (!failed)
 		step(cluster);
 	for (unsigned i = 0; i <= cluster->node_count; i++)

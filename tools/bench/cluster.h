@@ -9,6 +9,7 @@
 #define GROTTO_TOOLS_BENCH_CLUSTER_H
 
 #include "config/layout.h"
+#include "tools/cli.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -23,17 +24,20 @@ struct cluster_options {
 	int nodes, hz, samples, runs;
 	int loopback, multicast; /* 0 or 1 */
 };
+#define CLUSTER_DEFAULTS { .nodes = 4, .hz = 120, .samples = 600, .runs = 5 }
 
 /* What a bench is. */
 struct cluster_bench {
 	const char *name;    /* of its program */
 	const char *usage, *summary;
 	const char *samples; /* the option that says how many of them a run has */
-	int samples_most;
+	int samples_most, nodes_least;
+	const struct cli_option *options; /* of its own, 0 to 6 */
+	size_t option_count;
 	uint16_t port;       /* the master's; the nodes' and the group's are above it */
 	const char *group;   /* with multicast */
 	const char *network; /* of the namespaces: "10.99.0" */
-	/* All runs; an exit status. */
+	/* All runs; an exit status. The options are those given to cluster_main. */
 	int (*measure)(const struct cluster_options *options);
 	/* One run, in the process of that end; end node_count is the master. */
 	void (*run)(void *room, unsigned end);
@@ -59,7 +63,7 @@ struct bench_cluster {
 };
 
 /* The main of a bench: its options, then measure(). An exit status. */
-int cluster_main(const struct cluster_bench *bench, int argc, char **argv);
+int cluster_main(const struct cluster_bench *bench, struct cluster_options *options, int argc, char **argv);
 
 /* Zeroed, for all processes begun later, until the last ends. NULL without memory. */
 void *cluster_shared(size_t size);

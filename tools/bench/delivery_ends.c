@@ -3,44 +3,20 @@
 #include "tools/bench/delivery.h"
 
 #include "base/clock.h"
-#include "base/cursor.h"
 #include "protocol/message.h"
 #include "tools/bench/cluster_ends.h"
 
 #include <poll.h>
-#include <spawn.h>
-#include <stdio.h>
 #include <string.h>
-#include <sys/wait.h>
 
 #define RECEIVE_MOST 256
 #define LOOK_NS (20 * GR_NS_PER_MS) /* how often an end looks whether the run is over */
-#define BARE_HEAD 12
 #define BALLAST_WORDS_MOST (UINT16_MAX / 4) /* the size of a parameter has 16 bits */
 #define DEADLINE_NS (33 * GR_NS_PER_MS)
-
-static const uint8_t bare_magic[4] = { 'B', 'A', 'R', 'E' };
-extern char **environ;
 
 static int64_t now(void)
 {
 	return gr_clock_now(&gr_clock_monotonic);
-}
-
-bool delivery_lose(unsigned permille)
-{
-	char rules[320], *words[] = { (char *)"nft", rules, NULL };
-	int status, len;
-	pid_t pid;
-
-	len = snprintf(rules, sizeof rules, "add table netdev loss; delete table netdev loss");
-	if (permille)
-		snprintf(rules + len, sizeof rules - (size_t)len,
-			 "; add table netdev loss; add chain netdev loss in { type filter hook ingress "
-			 "device \"eth0\" priority 0; }; add rule netdev loss in ip protocol udp numgen "
-			 "random mod 1000 < %u drop", permille);
-	return !posix_spawnp(&pid, words[0], NULL, NULL, words, environ) &&
-	       waitpid(pid, &status, 0) == pid && WIFEXITED(status) && !WEXITSTATUS(status);
 }
 
 /* Until something can be read or the time has come. */
@@ -64,8 +40,11 @@ struct master_end {
 	struct delivery_room *room;
 	uint64_t random;
 	uint64_t frame;
-	unsigned bare;
-	int64_t next_ns, next_bare_ns;
+	int64_t next_ns;
+	struct bare {
+		unsigned sent;
+		int64_t next_ns; /* 0: not before the first frame that counts */
+	} bare[DELIVERY_FDP];
 	uint64_t bytes_warm; /* sent before the updates that count */
 };
 
@@ -156,27 +135,35 @@ static void begin(struct master_end *m)
 		m->next_ns = now();
 }
 
-/* The floor: the same bytes in datagrams that nobody acknowledges, half a period later. */
-static void send_bare(struct master_end *m)
+/* Between the frames: bare ones half a period later, signed ones three quarters. */
+static void send_bare(struct master_end *m, int64_t *until_ns)
 {
 	struct delivery_room *room = m->room;
-	static uint8_t bytes[FDP_DATAGRAM_MAX];
-	const size_t most = net_datagram_max(&room->cluster.layout.network);
-	const size_t count = (room->update_bytes + most - 1) / most;
+	const int64_t period_ns = room->cluster.period_ns;
 
-	room->sent_ns[DELIVERY_BARE][m->bare] = now();
-	for (size_t i = 0; i < count; i++) {
-		const size_t left = room->update_bytes - i * most, len = left < most ? left : most;
-		struct gr_writer w = gr_writer(bytes, sizeof bytes);
+	if (m->frame <= room->warm)
+		return;
+	for (int way = DELIVERY_BARE; way < DELIVERY_FDP; way++) {
+		struct bare *bare = &m->bare[way];
 
-		gr_write_bytes(&w, bare_magic, sizeof bare_magic);
-		gr_write_u32(&w, m->bare);
-		gr_write_u32(&w, (uint32_t)count);
-		net_send(m->end.net, room->cluster.layout.network.cast == LAYOUT_MULTICAST ? FDP_TO_GROUP : FDP_TO_ALL,
-			 bytes, len < BARE_HEAD ? BARE_HEAD : len);
+		if (bare->sent == room->updates)
+			continue;
+		if (!bare->next_ns)
+			bare->next_ns = now() + period_ns / 2 + way * period_ns / 4;
+		if (now() >= bare->next_ns) {
+			delivery_send_bare(room, m->end.net, (enum delivery_way)way, bare->sent++);
+			bare->next_ns += period_ns;
+		}
+		*until_ns = bare->next_ns < *until_ns ? bare->next_ns : *until_ns;
 	}
-	net_flush(m->end.net);
-	m->bare++;
+}
+
+static bool all_sent(const struct master_end *m)
+{
+	const unsigned updates = m->room->updates;
+
+	return m->frame >= m->room->warm + updates && m->bare[DELIVERY_BARE].sent == updates &&
+	       m->bare[DELIVERY_SIGNED].sent == updates;
 }
 
 static void master_run(struct master_end *m)
@@ -192,21 +179,13 @@ static void master_run(struct master_end *m)
 		const bool present = fdp_master_present(m->end.fdp) == room->cluster.node_count;
 		int64_t until_ns = fdp_master_next(m->end.fdp);
 
-		if (m->frame >= last && m->bare >= room->updates && idle)
+		if (idle && all_sent(m))
 			break;
 		if (!present)
 			m->next_ns = now();
 		else if (idle && m->frame < last && now() >= m->next_ns)
 			begin(m);
-		if (m->frame > room->warm && m->bare < room->updates) {
-			if (!m->next_bare_ns)
-				m->next_bare_ns = now() + room->cluster.period_ns / 2;
-			if (now() >= m->next_bare_ns) {
-				send_bare(m);
-				m->next_bare_ns += room->cluster.period_ns;
-			}
-			until_ns = m->next_bare_ns < until_ns ? m->next_bare_ns : until_ns;
-		}
+		send_bare(m, &until_ns);
 		if (now() >= fdp_master_next(m->end.fdp))
 			fdp_master_tick(m->end.fdp, now());
 		net_flush(m->end.net);
@@ -243,39 +222,18 @@ struct node_end {
 	struct cluster_node end; /* first: the protocol's ctx */
 	struct delivery_room *room;
 	uint64_t ready, swap; /* frames: to be said ready, to be shown */
-	uint32_t bare, bare_have;
+	struct delivery_bare bare[DELIVERY_FDP];
 };
-
-static void note(struct node_end *n, enum delivery_way way, uint64_t update)
-{
-	if (update < n->room->updates)
-		n->room->arrived_ns[way][(size_t)n->end.index * n->room->updates + update] = now();
-}
 
 static void node_event(void *ctx, const struct fdp_node_event *event)
 {
 	struct node_end *n = ctx;
 
 	if (event->kind == FDP_NODE_FRAME) {
-		note(n, DELIVERY_FDP, event->frame - n->room->warm - 1);
+		delivery_note(n->room, DELIVERY_FDP, n->end.index, event->frame - n->room->warm - 1);
 		n->ready = event->frame;
 	} else if (event->kind == FDP_NODE_SWAP) {
 		n->swap = event->frame;
-	}
-}
-
-static void take_bare(struct node_end *n, const uint8_t *bytes, size_t len)
-{
-	struct gr_reader r = gr_reader(bytes + sizeof bare_magic, len - sizeof bare_magic);
-	const uint32_t update = gr_read_u32(&r), count = gr_read_u32(&r);
-
-	if (update != n->bare || !n->bare_have) {
-		n->bare = update;
-		n->bare_have = 0;
-	}
-	if (++n->bare_have == count) {
-		note(n, DELIVERY_BARE, update);
-		n->bare_have = 0;
 	}
 }
 
@@ -285,10 +243,8 @@ static void node_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	struct node_end *n = ctx;
 
 	(void)from;
-	if (len >= BARE_HEAD && !memcmp(bytes, bare_magic, sizeof bare_magic)) {
-		take_bare(n, bytes, len);
+	if (len >= FDP_HEADER_BYTES && delivery_take_bare(n->room, n->end.index, n->bare, bytes, len))
 		return;
-	}
 	fdp_node_arrived(n->end.fdp, arrived_ns);
 	fdp_node_receive(n->end.fdp, bytes, len, now());
 }

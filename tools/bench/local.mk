@@ -60,17 +60,24 @@ tools_bench_barrier_LDADD = $(CLUSTER_LIBS) $(PROTOCOL_LIBS) -lpthread -lm
 EXTRA_PROGRAMS = tools/bench-delivery-200 tools/bench-delivery-4k tools/bench-delivery-64k
 bench-delivery: $(EXTRA_PROGRAMS)
 CLEANFILES += $(EXTRA_PROGRAMS)
+DISTCLEANFILES = norm_api.h
 DELIVERY_SOURCES = \
 	tools/bench/delivery.c tools/bench/delivery.h \
-	tools/bench/delivery_ends.c $(CLUSTER_SOURCES)
+	tools/bench/delivery_bare.c tools/bench/delivery_ends.c \
+	tools/bench/delivery_loss.c tools/bench/delivery_peer.c \
+	tools/bench/peer.c tools/bench/peer.h tools/bench/peer_enet.c \
+	tools/bench/peer_norm.c tools/bench/peer_pgm.c tools/bench/peer_tcp.c \
+	$(CLUSTER_SOURCES)
+DELIVERY_CFLAGS = $(CLUSTER_CFLAGS) $(PEER_CFLAGS)
+DELIVERY_LIBS = $(CLUSTER_LIBS) $(PEER_LIBS)
 DELIVERY_BALLAST_SOURCES = $(DELIVERY_SOURCES) \
 	tools/bench/ballast/protocol/params.def $(protocol_libgprotocol_a_SOURCES)
 DELIVERY_BALLAST_CPPFLAGS = -iquote $(top_srcdir)/tools/bench/ballast $(AM_CPPFLAGS)
-DELIVERY_BALLAST_CFLAGS = $(CLUSTER_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS)
-DELIVERY_BALLAST_LIBS = $(CLUSTER_LIBS) $(BASE_LIBS) $(LZO_LIBS) -lpthread -lm
+DELIVERY_BALLAST_CFLAGS = $(DELIVERY_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS)
+DELIVERY_BALLAST_LIBS = $(DELIVERY_LIBS) $(BASE_LIBS) $(LZO_LIBS) -lpthread -lm
 tools_bench_delivery_200_SOURCES = $(DELIVERY_SOURCES)
-tools_bench_delivery_200_CFLAGS = $(CLUSTER_CFLAGS)
-tools_bench_delivery_200_LDADD = $(CLUSTER_LIBS) $(PROTOCOL_LIBS) -lpthread -lm
+tools_bench_delivery_200_CFLAGS = $(DELIVERY_CFLAGS)
+tools_bench_delivery_200_LDADD = $(DELIVERY_LIBS) $(PROTOCOL_LIBS) -lpthread -lm
 tools_bench_delivery_4k_SOURCES = $(DELIVERY_BALLAST_SOURCES)
 tools_bench_delivery_4k_CPPFLAGS = $(DELIVERY_BALLAST_CPPFLAGS) -DBALLAST_WORDS=970
 tools_bench_delivery_4k_CFLAGS = $(DELIVERY_BALLAST_CFLAGS)
