@@ -83,7 +83,8 @@ static int64_t error_at(const struct fdp_clock *c, int64_t now_ns)
 		error = 0.5 * (double)bin->trip_ns +
 			fabs((double)(bin->offset_ns - c->offset_ns) - line_at(c, bin->at_ns)) +
 			c->skew_error * fabs((double)(now_ns - bin->at_ns));
-		least = fmin(least, error);
+		if (error < least) /* fmin is a call, and this runs for each report */
+			least = error;
 	}
 	return least < (double)SANE_NS ? (int64_t)ceil(least) : SANE_NS;
 }

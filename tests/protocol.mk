@@ -11,6 +11,7 @@ SHARE_ROOM_SOURCES = tests/unit/share_room.c tests/unit/share_room.h $(CLUSTER_S
 PROTOCOL_TESTS = \
 	tests/unit/test_clock_offset \
 	tests/unit/test_cluster \
+	tests/unit/test_cluster_day \
 	tests/unit/test_cluster_hostile \
 	tests/unit/test_fragment \
 	tests/unit/test_key \
@@ -33,6 +34,9 @@ tests_unit_test_clock_offset_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_cluster_SOURCES = tests/unit/test_cluster.c $(CLUSTER_SIM_SOURCES)
 tests_unit_test_cluster_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_cluster_LDADD = $(PROTOCOL_TEST_LDADD)
+tests_unit_test_cluster_day_SOURCES = tests/unit/test_cluster_day.c $(CLUSTER_SIM_SOURCES)
+tests_unit_test_cluster_day_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_unit_test_cluster_day_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_cluster_hostile_SOURCES = tests/unit/test_cluster_hostile.c $(CLUSTER_SIM_SOURCES)
 tests_unit_test_cluster_hostile_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_cluster_hostile_LDADD = $(PROTOCOL_TEST_LDADD)

@@ -106,28 +106,26 @@ static bool may_begin(const struct sim *s)
 	return s->running && fdp_master_idle(s->master) && s->swapped < s->stop_at;
 }
 
+/*
+ * When each is next due is kept, since a frame has hundreds of events and each
+ * concerns one node; whoever calls sim_run_* may have changed anything before.
+ */
+static void refresh(struct sim *s)
+{
+	s->master_wake_ns = s->master ? fdp_master_next(s->master) : INT64_MAX;
+	for (size_t i = 0; i < s->node_count; i++)
+		s->nodes[i].wake_ns = sim_node_wake(&s->nodes[i]);
+}
+
 static int64_t earliest(const struct sim *s)
 {
-	int64_t next = s->packet_count ? s->packets[0].at_ns : INT64_MAX, at;
+	int64_t next = s->packet_count ? s->packets[0].at_ns : INT64_MAX;
 
-	if (s->master) {
-		at = fdp_master_next(s->master);
-		next = at < next ? at : next;
-		if (may_begin(s) && s->begin_at_ns < next)
-			next = s->begin_at_ns;
-	}
-	for (size_t i = 0; i < s->node_count; i++) {
-		const struct sim_node *n = &s->nodes[i];
-
-		if (!n->node || n->asleep)
-			continue;
-		at = sim_true_time(n, fdp_node_next(n->node));
-		next = at < next ? at : next;
-		at = n->swap ? sim_true_time(n, n->swap_at_ns) : INT64_MAX;
-		next = at < next ? at : next;
-		if (n->drawing && n->drawn_at_ns < next)
-			next = n->drawn_at_ns;
-	}
+	next = s->master_wake_ns < next ? s->master_wake_ns : next;
+	if (s->master && may_begin(s) && s->begin_at_ns < next)
+		next = s->begin_at_ns;
+	for (size_t i = 0; i < s->node_count; i++)
+		next = s->nodes[i].wake_ns < next ? s->nodes[i].wake_ns : next;
 	return next;
 }
 
@@ -136,12 +134,17 @@ static void deliver(struct sim *s, const struct sim_packet *p)
 	if (p->to < 0) {
 		bool fresh = false;
 
-		if (s->master)
+		if (s->master) {
 			fdp_master_receive(s->master, p->bytes, p->len, s->now_ns, &fresh);
+			s->master_wake_ns = fdp_master_next(s->master);
+		}
 		s->fresh += fresh;
 	} else if (s->nodes[p->to].node && !s->nodes[p->to].asleep) {
-		fdp_node_receive(s->nodes[p->to].node, p->bytes, p->len, sim_node_time(&s->nodes[p->to]));
-		sim_tend_node(s, &s->nodes[p->to]);
+		struct sim_node *n = &s->nodes[p->to];
+
+		fdp_node_receive(n->node, p->bytes, p->len, sim_node_time(n));
+		sim_tend_node(s, n);
+		n->wake_ns = sim_node_wake(n);
 	}
 	free(p->bytes);
 }
@@ -153,16 +156,21 @@ static void step(struct sim *s)
 
 		deliver(s, &p);
 	}
-	for (size_t i = 0; i < s->node_count; i++)
+	for (size_t i = 0; i < s->node_count; i++) {
+		if (s->nodes[i].wake_ns > s->now_ns)
+			continue;
 		sim_step_node(s, &s->nodes[i]);
+		s->nodes[i].wake_ns = sim_node_wake(&s->nodes[i]);
+	}
 	if (!s->master)
 		return;
-	if (s->now_ns >= fdp_master_next(s->master)) {
+	if (s->now_ns >= s->master_wake_ns) {
 		fdp_master_tick(s->master, s->now_ns);
 		assert_true(fdp_master_next(s->master) > s->now_ns);
 	}
 	if (may_begin(s) && s->now_ns >= s->begin_at_ns)
 		sim_begin_frame(s);
+	s->master_wake_ns = fdp_master_next(s->master);
 }
 
 static void advance(struct sim *s, int64_t until_ns)
@@ -178,6 +186,7 @@ void sim_run_ns(struct sim *s, int64_t ns)
 {
 	const int64_t until = s->now_ns + ns;
 
+	refresh(s);
 	while (s->now_ns < until)
 		advance(s, until);
 }
@@ -189,6 +198,7 @@ void sim_run_frames(struct sim *s, uint64_t frames)
 
 	s->running = true;
 	s->stop_at = until;
+	refresh(s);
 	while (s->swapped < until) {
 		advance(s, give_up);
 		assert_true(s->now_ns < give_up); /* the room never stops */
@@ -202,6 +212,7 @@ void sim_assemble(struct sim *s)
 {
 	const int64_t give_up = s->now_ns + 5000 * SIM_MS;
 
+	refresh(s);
 	for (;;) {
 		size_t in = 0;
 

@@ -17,6 +17,19 @@
 #define SIM_EPOCH_NS INT64_C(1000000000000)
 #define SIM_STATES 256 /* frames whose state is remembered for comparison */
 
+/*
+ * Loss in bursts: each way of each node is good or bad, as the dice fall at each
+ * of its datagrams, and a bad way loses each with `lost`. Of all the share
+ * lost * to_bad / (to_bad + to_good) is, in a row 1 / to_good when lost is 1.
+ * (Gilbert, Bell System Technical Journal 39, 1960; Elliott, same, 42, 1963.)
+ */
+struct sim_bursts {
+	double to_bad, to_good, lost; /* probabilities; to_bad 0: none */
+	uint64_t bad_to, bad_from;    /* nodes to which, from which the way is bad now */
+	uint64_t datagrams, losses, runs; /* runs: losses whose way's datagram before was not one */
+	uint64_t last_to, last_from;      /* ways that lost their last datagram */
+};
+
 struct sim_packet {
 	int64_t at_ns;
 	uint64_t order; /* equal times keep their order */
@@ -40,6 +53,7 @@ struct sim_node {
 	int64_t swap_at_ns; /* its clock; 0: at once */
 	int64_t clock_ns; /* its clock less the master's at SIM_EPOCH_NS */
 	double clock_ppm; /* what it gains from then on */
+	int64_t wake_ns; /* true time at which it has something to do, kept while the simulation runs */
 	uint64_t frames, swaps, last_frame, last_swap, joined, lost, refused, mismatches, left;
 	char reason[FDP_REASON_MAX];
 };
@@ -48,6 +62,7 @@ struct sim {
 	struct unit_random random;
 	int64_t now_ns;
 	double loss, duplicate;
+	struct sim_bursts bursts; /* besides `loss` */
 	int64_t delay_ns, jitter_ns;
 	size_t datagram_max;
 	enum fdp_swap swap;
@@ -60,13 +75,14 @@ struct sim {
 	int64_t link_free_ns; /* when the link has sent all that is queued */
 
 	struct fdp_master *master; /* NULL: dead */
+	int64_t master_wake_ns;    /* as a node's wake_ns */
 	uint64_t session;
 	size_t node_count;
 	struct sim_node nodes[FDP_MAX_NODES];
 	char names[FDP_MAX_NODES][FDP_NAME_BYTES];
 
 	struct sim_packet *packets; /* a binary heap */
-	size_t packet_count, packet_room;
+	size_t packet_count, packet_room, packet_most; /* most: ever under way */
 	uint64_t order;
 
 	struct param_state *state;
@@ -74,7 +90,7 @@ struct sim {
 	bool running;
 	uint64_t stop_at; /* begin no frame once so many have swapped */
 	int64_t begin_at_ns, begun_ns;
-	uint64_t state_hash[SIM_STATES];
+	struct param_state states[SIM_STATES]; /* that the master said, by frame */
 	uint64_t swapped, joined, left, late, evicted, mismatches, refused;
 	uint64_t fresh; /* datagrams that the master took as no recording */
 	uint64_t to_group, ways; /* datagrams to the group; FDP_MASTER_WAY */
@@ -82,6 +98,7 @@ struct sim {
 	int deaf;
 	bool join_pending;
 	char reason[FDP_REASON_MAX];
+	bool untimed; /* deliveries and spreads are not kept: a long run has too many */
 	int64_t *delivery_ns; /* begin to FDP_NODE_FRAME, all nodes and frames */
 	size_t delivery_count, delivery_room;
 	/* From the first node that shows a frame to the last, by true time; of frames that all showed. */

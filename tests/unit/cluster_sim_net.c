@@ -15,6 +15,7 @@ static void heap_push(struct sim *s, struct sim_packet packet)
 {
 	size_t i = s->packet_count++;
 
+	s->packet_most = s->packet_count > s->packet_most ? s->packet_count : s->packet_most;
 	if (s->packet_count > s->packet_room) {
 		s->packet_room = s->packet_room ? s->packet_room * 2 : 256;
 		s->packets = realloc(s->packets, s->packet_room * sizeof *s->packets);
@@ -52,6 +53,28 @@ void sim_inject(struct sim *s, int to, const uint8_t *bytes, size_t len, int64_t
 					  unit_copy(bytes, len) });
 }
 
+static void set_bit(uint64_t *bits, int i, bool on)
+{
+	*bits = on ? *bits | UINT64_C(1) << i : *bits & ~(UINT64_C(1) << i);
+}
+
+/* The next datagram on a node's way, to it or from it: is it lost to a burst? */
+static bool lost_in_burst(struct sim *s, int node, bool to)
+{
+	struct sim_bursts *b = &s->bursts;
+	uint64_t *bad = to ? &b->bad_to : &b->bad_from, *last = to ? &b->last_to : &b->last_from;
+	const bool was = *bad >> node & 1;
+	const bool is = was ? sim_uniform(s) >= b->to_good : sim_uniform(s) < b->to_bad;
+	const bool lost = is && sim_uniform(s) < b->lost;
+
+	set_bit(bad, node, is);
+	b->datagrams++;
+	b->losses += lost;
+	b->runs += lost && !(*last >> node & 1);
+	set_bit(last, node, lost);
+	return lost;
+}
+
 /* One receiver's copy of a datagram: lost, late, twice, as the dice fall. */
 static void carry(struct sim *s, int to, int about, const uint8_t *bytes, size_t len,
 		  int64_t queued_ns)
@@ -64,6 +87,8 @@ static void carry(struct sim *s, int to, int about, const uint8_t *bytes, size_t
 		uint8_t *copy;
 
 		if (s->loss > 0 && sim_uniform(s) < s->loss)
+			continue;
+		if (s->bursts.to_bad > 0 && lost_in_burst(s, about, to >= 0))
 			continue;
 		copy = unit_copy(bytes, len);
 		if (s->tamper && !s->tamper(s, to, copy, len)) {

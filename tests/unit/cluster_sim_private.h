@@ -18,6 +18,8 @@ void sim_master_event(void *ctx, const struct fdp_master_event *e);
 void sim_node_event(void *ctx, const struct fdp_node_event *e);
 /* The first time at which a node's clock has come so far. */
 int64_t sim_true_time(const struct sim_node *n, int64_t local_ns);
+/* When the node, by true time, has something to do next. */
+int64_t sim_node_wake(const struct sim_node *n);
 void sim_begin_frame(struct sim *s);
 /* The node's daemon, after each call into the state machine. */
 void sim_tend_node(struct sim *s, struct sim_node *n);
