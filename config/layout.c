@@ -65,6 +65,7 @@ static void build_rest(struct layout *layout, struct layout_file *file)
 		layout->network.key_file_line = key_line(file->network.at, "key_file");
 	layout->rates = file->rates.rates;
 	layout->swap = file->swap.swap;
+	layout->slow = file->slow.slow;
 	layout->test = file->test.test;
 	for (size_t i = 0; i < file->tracker_count; i++)
 		layout_tracker_build(&layout->trackers[i], &file->trackers[i]);

@@ -108,6 +108,21 @@ struct layout_swap {
 	enum layout_orphan orphan;
 };
 
+/* What becomes of a node that lives and does not keep up; protocol/pace.h has the rule. */
+enum layout_slow_policy {
+	LAYOUT_SLOW_EVICT, /* it is left out, and may not come back at once */
+	LAYOUT_SLOW_WAIT,  /* all wait for it, past the deadline */
+	LAYOUT_SLOW_HALF,  /* it shows every second frame, the others all */
+};
+
+struct layout_slow {
+	enum layout_slow_policy policy;
+	int64_t limit_ns;       /* ready later than this is slow; 0: the deadline, for half 1.5 frames */
+	int frames;             /* so many more slow frames than others, and the policy is followed */
+	int64_t wait_most_ns;   /* all wait for it no longer than this after a frame began */
+	int64_t rejoin_most_ns; /* the longest that an evicted one is kept out */
+};
+
 /* What only a room that is being tested has. */
 struct layout_test {
 	bool faults;       /* grotto faults may disturb it */
@@ -179,6 +194,7 @@ struct layout {
 	struct layout_network network;
 	struct layout_rates rates;
 	struct layout_swap swap;
+	struct layout_slow slow;
 	struct layout_test test;
 	struct layout_tracker *trackers;
 	size_t tracker_count;
@@ -214,7 +230,7 @@ int layout_write(FILE *file, const struct layout *layout);
  * file, up to `room` of them (items may be NULL), and the BLAKE2b-256 of the
  * canonical form of all: walls, nodes (name, wall, part, address, port, eyes), network, rates,
  * start, room, eye separation. Not of paths, comments, the key file, the
- * trackers, the control socket, tests and how far ahead a swap is set (the master's own), nor of target, display,
+ * trackers, the control socket, tests, slow and how far ahead a swap is set (the master's own), nor of target, display,
  * monitor and gpu (one node's own). layout_load has stored it in hash. Returns the
  * number of parts, at most LAYOUT_ITEMS_MAX.
  */

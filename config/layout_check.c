@@ -13,6 +13,29 @@ static void check_wall_names(struct options_reader *reader, struct layout_file *
 					      file->walls[i].name);
 }
 
+/* Nobody waits longer than the barrier does: a limit past that would never be met. */
+static void check_slow(struct options_reader *reader, const struct layout_file *file)
+{
+	const struct layout_slow *slow = &file->slow.slow;
+	const double deadline_ms = (double)file->rates.rates.barrier_deadline_ns * 1e-6;
+	const double most_ms = (double)slow->wait_most_ns * 1e-6, limit_ms = (double)slow->limit_ns * 1e-6;
+	const bool waits = slow->policy == LAYOUT_SLOW_WAIT;
+
+	if (!file->slow.at)
+		return;
+	if (waits && most_ms < deadline_ms)
+		options_fault(reader, GR_DIAG_ERROR, file->slow.at, "wait_most_ms",
+			      "%g ms is less than all wait anyway (rates.barrier_deadline_ms, %g)", most_ms,
+			      deadline_ms);
+	else if (waits && limit_ms > most_ms)
+		options_fault(reader, GR_DIAG_ERROR, file->slow.at, "limit_ms",
+			      "%g ms, but nobody waits longer than wait_most_ms, %g", limit_ms, most_ms);
+	else if (!waits && limit_ms > deadline_ms)
+		options_fault(reader, GR_DIAG_ERROR, file->slow.at, "limit_ms",
+			      "%g ms, but nobody waits longer than rates.barrier_deadline_ms, %g", limit_ms,
+			      deadline_ms);
+}
+
 static void check_control_socket(struct options_reader *reader, const struct layout_file *file)
 {
 	const struct sockaddr_un address;
@@ -40,5 +63,6 @@ void layout_check(struct options_reader *reader, struct layout_file *file)
 	layout_check_room(reader, file);
 	layout_check_network(reader, file);
 	layout_check_trackers(reader, file);
+	check_slow(reader, file);
 	check_control_socket(reader, file);
 }

@@ -9,6 +9,7 @@ static const char *const target_choices[] = { "headless", "window", "fullscreen"
 static const char *const cast_choices[] = { "unicast", "multicast", "broadcast", "auto", NULL };
 static const char *const swap_choices[] = { "auto", "message", "scheduled", "hardware", NULL };
 static const char *const orphan_choices[] = { "hold", "black", "test", NULL };
+static const char *const slow_choices[] = { "evict", "wait", "half", NULL };
 
 #define AT(type, member) .offset = offsetof(struct type, member)
 
@@ -141,6 +142,24 @@ static const struct option swap_options[] = {
 	{ .key = NULL },
 };
 
+static const struct option slow_options[] = {
+	{ .key = "policy", .type = OPTION_CHOICE, .choices = slow_choices, .standard = "evict",
+	  AT(layout_file_slow, slow.policy),
+	  .help = "what becomes of a node that lives and does not keep up: it is left out for a while, all wait for it, or it shows every second frame" },
+	{ .key = "limit_ms", .type = OPTION_TIME, .min = 0, .max = 60000, .standard = "0",
+	  .scale = LAYOUT_NS_PER_MS, .unit = "ms", AT(layout_file_slow, slow.limit_ns),
+	  .help = "a node that is ready later than this after a frame began is slow in it; 0: rates.barrier_deadline_ms, for half one and a half frames" },
+	{ .key = "frames", .type = OPTION_INT, .min = 1, .max = 100000, .standard = "120",
+	  .unit = "frames", AT(layout_file_slow, slow.frames),
+	  .help = "in how many more frames than not it must be slow before the policy is followed, and in time before it counts as cured" },
+	{ .key = "wait_most_ms", .type = OPTION_TIME, .min = 1, .max = 60000, .standard = "1000",
+	  .scale = LAYOUT_NS_PER_MS, .unit = "ms", AT(layout_file_slow, slow.wait_most_ns),
+	  .help = "for wait: how long after a frame began all wait for a slow node at most" },
+	{ .key = "rejoin_most_s", .type = OPTION_TIME, .min = 0, .max = 3600, .standard = "30",
+	  .scale = LAYOUT_NS_PER_S, .unit = "s", AT(layout_file_slow, slow.rejoin_most_ns),
+	  .help = "how long a node that was evicted for slowness is kept out at most; it begins with nothing, then 1 s, and doubles" },
+	{ .key = NULL },
+};
 static const struct option test_options[] = {
 	{ .key = "faults", .type = OPTION_BOOL, .standard = "false", AT(layout_file_test, test.faults),
 	  .help = "whether grotto faults may disturb the room; each daemon then has a control socket" },
@@ -202,6 +221,8 @@ const struct option layout_options[] = {
 	  .help = "frame rate, barrier, latency" },
 	{ .key = "swap", .type = OPTION_GROUP, AT(layout_file, swap), .group = swap_options,
 	  .help = "when the walls change their picture" },
+	{ .key = "slow", .type = OPTION_GROUP, AT(layout_file, slow), .group = slow_options,
+	  .help = "what becomes of a node that does not keep up" },
 	{ .key = "test", .type = OPTION_GROUP, AT(layout_file, test), .group = test_options,
 	  .help = "what only a room that is being tested has" },
 	{ .key = "start", .type = OPTION_GROUP, AT(layout_file, start), .group = start_options,

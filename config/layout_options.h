@@ -49,6 +49,11 @@ struct layout_file_swap {
 	struct layout_swap swap;
 };
 
+struct layout_file_slow {
+	const config_setting_t *at;
+	struct layout_slow slow;
+};
+
 struct layout_file_test {
 	const config_setting_t *at;
 	struct layout_test test;
@@ -100,6 +105,7 @@ struct layout_file {
 	struct layout_file_network network;
 	struct layout_file_rates rates;
 	struct layout_file_swap swap;
+	struct layout_file_slow slow;
 	struct layout_file_test test;
 	struct layout_file_start start;
 	struct layout_file_room room;
@@ -112,6 +118,7 @@ extern const struct option layout_tracker_options[];
 
 /* Factors from the files' units to ours. */
 #define LAYOUT_RAD_PER_DEG 0.017453292519943295
+#define LAYOUT_NS_PER_S 1e9
 #define LAYOUT_NS_PER_MS 1e6
 #define LAYOUT_NS_PER_US 1e3
 

@@ -60,6 +60,7 @@ int layout_write(FILE *file, const struct layout *layout)
 	form.network.network = layout->network;
 	form.rates.rates = layout->rates;
 	form.swap.swap = layout->swap;
+	form.slow.slow = layout->slow;
 	form.test.test = layout->test;
 	glm_vec3_copy((float *)layout->start_head.p, form.start.head);
 	glm_vec3_copy((float *)layout->start_wand.p, form.start.wand);

@@ -40,6 +40,7 @@ sbin_PROGRAMS += daemon/grotto-master daemon/grotto-node
 daemon_grotto_master_SOURCES = \
 	daemon/master.c daemon/master.h \
 	daemon/master_main.c \
+	daemon/master_pace.c daemon/master_pace.h \
 	daemon/master_record.c \
 	daemon/master_save.c \
 	daemon/master_report.c \

@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/result.h"
+#include "daemon/master_pace.h"
 #include "protocol/message.h"
 
 #include <errno.h>
@@ -27,19 +28,6 @@ static const char *node_name(const struct master *m, int node)
 static size_t members(const struct master *m)
 {
 	return (size_t)__builtin_popcountll(m->members);
-}
-
-static uint64_t barrier_nodes(const struct master *m)
-{
-	uint64_t bits = 0;
-
-	for (size_t i = 0; i < m->params.layout->node_count; i++) {
-		struct fdp_peer_status peer;
-		fdp_master_peer(m->fdp, i, &peer);
-		if (peer.state == FDP_PEER_LIVE || peer.state == FDP_PEER_LATE)
-			bits |= UINT64_C(1) << i;
-	}
-	return bits;
 }
 
 _Static_assert(NET_TO_ALL == FDP_TO_ALL && NET_TO_GROUP == FDP_TO_GROUP,
@@ -133,10 +121,9 @@ static void on_event(void *ctx, const struct fdp_master_event *event)
 	case FDP_MASTER_EVICTED:
 		m->evicted++;
 		node_gone(m, event->node);
-		gr_error("node %s is gone: it missed %d frames in a row; the room goes on without it "
-			 "(if it lives, rates.barrier_deadline_ms is too short for it)",
-			 node_name(m, event->node), m->params.layout->rates.evict_frames);
+		master_note_evicted(m, event);
 		break;
+	case FDP_MASTER_PACE: master_note_pace(m, event, now_ns); break;
 	case FDP_MASTER_MISMATCH: node_mismatch(m, event, now_ns); break;
 	case FDP_MASTER_WAY: note_way(m, event, now_ns); break;
 	case FDP_MASTER_SWAP:
@@ -178,7 +165,7 @@ static void look_for_caught_up(struct master *m, int64_t now_ns)
 		if (!(m->behind >> i & 1))
 			continue;
 		fdp_master_peer(m->fdp, (size_t)i, &peer);
-		if (peer.state == FDP_PEER_LIVE && peer.ready == m->frame)
+		if (peer.state == FDP_PEER_LIVE && peer.ready == m->frame && peer.pace != FDP_PACE_HALF)
 			caught_up |= UINT64_C(1) << i;
 	}
 	if (caught_up && now_ns - m->light_restart_ns > LIGHT_RESTART_NS) {
@@ -250,7 +237,7 @@ static void begin_frame(struct master *m, int64_t now_ns)
 	m->restart_light = false;
 	previous_hash = fdp_master_hash(m->fdp);
 	r = fdp_master_begin(m->fdp, m->state, next.frame, now_ns);
-	live = barrier_nodes(m);
+	live = fdp_master_every_frame(m->fdp);
 	frame_stats_begin(&m->stats, next.frame, live, now_ns);
 	net_flush(m->net);
 	record_frame(m, &next, previous_hash, live, now_ns);
@@ -474,6 +461,7 @@ static int create_protocol(struct master *m)
 		.datagram_max = net_datagram_max(&layout->network),
 		.deadline_ns = layout->rates.barrier_deadline_ns,
 		.evict_frames = (unsigned)layout->rates.evict_frames,
+		.pace = master_pace_params(layout),
 		.multicast = net_has_group(m->net),
 		.probe_group = net_has_group(m->net) && layout->network.cast == LAYOUT_AUTO,
 		.swap = swap_of(layout->swap.mode),

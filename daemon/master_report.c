@@ -4,6 +4,7 @@
 #include "base/result.h"
 #include "daemon/control.h"
 #include "daemon/json.h"
+#include "daemon/master_pace.h"
 #include "renderer/gi/plan.h"
 
 #include <inttypes.h>
@@ -72,6 +73,7 @@ static void write_node(struct json *json, const struct master *m, size_t i, int6
 	json_string(json, "name", node->name);
 	json_string(json, "wall", m->params.layout->walls[node->wall].name);
 	json_string(json, "state", fdp_peer_state_name(peer.state));
+	master_write_pace(json, &peer, now_ns);
 	json_u64(json, "acked", peer.acked);
 	json_u64(json, "ready", peer.ready);
 	json_u64(json, "swapped", peer.swapped);

@@ -10,7 +10,8 @@
 
 struct fdp_barrier {
 	uint64_t frame;
-	uint64_t live;  /* counted in since the frame began */
+	uint64_t live;  /* waited for: they count since the frame began */
+	uint64_t draws; /* begin to draw it, and are asked until they acknowledge */
 	uint64_t acked; /* hold the frame's state */
 	uint64_t ready;
 	int64_t begun_ns, deadline_ns; /* absolute */
@@ -19,13 +20,14 @@ struct fdp_barrier {
 static inline void fdp_barrier_start(struct fdp_barrier *b, uint64_t frame, uint64_t live,
 				     int64_t now_ns, int64_t wait_ns)
 {
-	*b = (struct fdp_barrier){ frame, live, 0, 0, now_ns, now_ns + wait_ns };
+	*b = (struct fdp_barrier){ frame, live, live, 0, 0, now_ns, now_ns + wait_ns };
 }
 
 /* A node that left, or joined anew, is waited for no more. */
 static inline void fdp_barrier_drop(struct fdp_barrier *b, unsigned node)
 {
 	b->live &= ~(UINT64_C(1) << node);
+	b->draws &= ~(UINT64_C(1) << node);
 }
 
 static inline uint64_t fdp_barrier_unready(const struct fdp_barrier *b)
@@ -35,7 +37,7 @@ static inline uint64_t fdp_barrier_unready(const struct fdp_barrier *b)
 
 static inline uint64_t fdp_barrier_unacked(const struct fdp_barrier *b)
 {
-	return b->live & ~b->acked & ~b->ready;
+	return b->draws & ~b->acked & ~b->ready;
 }
 
 static inline bool fdp_barrier_complete(const struct fdp_barrier *b)

@@ -9,6 +9,7 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/master.c protocol/master.h protocol/master_private.h \
 	protocol/master_clock.c \
 	protocol/master_join.c \
+	protocol/master_pace.c \
 	protocol/master_receive.c \
 	protocol/master_refuse.c \
 	protocol/master_repair.c \
@@ -21,6 +22,7 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/node_share.c \
 	protocol/outbox.c protocol/outbox.h \
 	protocol/pack.c protocol/pack.h \
+	protocol/pace.c protocol/pace.h \
 	protocol/params.c protocol/params.def protocol/params.h protocol/state.h \
 	protocol/peer.c protocol/peer.h \
 	protocol/replay.h \

@@ -52,7 +52,8 @@ static int check_params(const struct fdp_master_params *p, const struct fdp_mast
 	if (!p->session || !p->node_count || p->node_count > FDP_MAX_NODES || !p->node_names ||
 	    p->datagram_max < FDP_DATAGRAM_MIN || p->datagram_max > FDP_DATAGRAM_MAX ||
 	    (p->probe_group && !p->multicast) || p->deadline_ns <= 0 || p->probe_ns < 0 ||
-	    p->swap_lead_most_ns < 0 || !p->evict_frames || !ops->send || !ops->event)
+	    p->swap_lead_most_ns < 0 || !p->evict_frames || p->pace.policy > FDP_SLOW_HALF ||
+	    p->pace.limit_ns < 0 || p->pace.wait_most_ns < 0 || p->pace.rejoin_most_ns < 0 || !ops->send || !ops->event)
 		return GR_ERR_RANGE;
 	for (size_t i = 0; i < p->node_count; i++)
 		if (!p->node_names[i] || !p->node_names[i][0] ||
@@ -94,6 +95,8 @@ int fdp_master_create(struct fdp_master **out, const struct fdp_master_params *p
 		strcpy(m->names[i], params->node_names[i]);
 	if (!m->params.probe_ns)
 		m->params.probe_ns = default_probe(params->deadline_ns);
+	m->usual_deadline_ns = params->deadline_ns;
+	m->pace = fdp_pace_complete(&params->pace, params->deadline_ns);
 	m->ops = *ops;
 	m->answers = -1;
 	m->bulk_node = (struct fdp_rate){ FDP_BULK_NODE_BYTES_S, FDP_BULK_NODE_BURST };
@@ -169,7 +172,7 @@ void fdp_master_announce(struct fdp_master *m, int to, enum fdp_kind kind)
 		.swapped = m->swapped,
 		.message = delta ? m->delta.number : 0,
 		.count = delta ? m->delta.count : 0,
-		.live = fdp_master_mask(m, fdp_peer_counts),
+		.live = fdp_master_draws(m),
 		.present = fdp_master_mask(m, fdp_peer_present),
 		.flags = fdp_master_twice(m) ? FDP_TWICE : 0,
 	};
@@ -214,7 +217,8 @@ void fdp_master_write_state(struct fdp_master *m, struct fdp_letter *letter, enu
 		.previous_frame = m->previous_frame,
 		.hash = m->hash,
 		.previous_hash = chained ? 0 : m->previous_hash,
-		.live = fdp_master_mask(m, fdp_peer_counts),
+		.live = fdp_master_draws(m),
+		.half = m->half.shows ? 0 : m->half.nodes,
 		.present = fdp_master_mask(m, fdp_peer_present),
 		.flags = (fdp_master_twice(m) ? FDP_TWICE : 0u) | (chained ? FDP_CHAINED : 0u),
 		.shared = m->share.since ? m->shared : 0,
@@ -307,7 +311,7 @@ int fdp_master_begin(struct fdp_master *m, const struct param_state *state, uint
 	promote_joiners(m);
 	live = fdp_master_mask(m, fdp_peer_counts);
 	m->underway = true;
-	fdp_barrier_start(&m->barrier, frame, live, now_ns, m->params.deadline_ns);
+	fdp_master_start_barrier(m, live, now_ns);
 	m->probes = 0;
 	fdp_master_choose_way(m, live, now_ns);
 	fdp_master_begin_repairs(m);
@@ -332,30 +336,6 @@ int fdp_master_chain(struct fdp_master *m, uint64_t previous_frame, uint64_t pre
 	return GR_OK;
 }
 
-/* Marks who was not ready; they keep counting until they have missed too many. */
-static void mark_late(struct fdp_master *m)
-{
-	const uint64_t late = fdp_barrier_unready(&m->barrier);
-
-	for (size_t i = 0; i < m->params.node_count; i++) {
-		struct fdp_peer *peer = &m->peers[i];
-		struct fdp_master_event event = { .node = (int)i, .frame = m->frame };
-
-		if (!(late & BIT(i)))
-			continue;
-		peer->status.missed++;
-		peer->missed_row++;
-		peer->state = fdp_peer_next(peer->state, FDP_PEER_MISSES);
-		event.kind = FDP_MASTER_LATE;
-		fdp_master_say(m, &event);
-		if (peer->missed_row < m->params.evict_frames)
-			continue;
-		peer->state = fdp_peer_next(peer->state, FDP_PEER_EXPIRES);
-		event.kind = FDP_MASTER_EVICTED;
-		fdp_master_say(m, &event);
-	}
-}
-
 void fdp_master_finish_if_over(struct fdp_master *m, int64_t now_ns)
 {
 	struct fdp_master_event swap = {
@@ -363,9 +343,9 @@ void fdp_master_finish_if_over(struct fdp_master *m, int64_t now_ns)
 	};
 	uint64_t live;
 
-	if (!m->underway || !fdp_barrier_over(&m->barrier, now_ns))
+	if (!m->underway || !fdp_master_frame_over(m, now_ns))
 		return;
-	mark_late(m);
+	fdp_master_judge(m, now_ns);
 	m->underway = false;
 	m->swapped = m->frame;
 	m->swapped_ns = now_ns;
@@ -508,6 +488,9 @@ void fdp_master_peer(const struct fdp_master *m, size_t node, struct fdp_peer_st
 		return;
 	*out = m->peers[node].status;
 	out->state = m->peers[node].state;
+	out->pace = m->peers[node].pace.state;
+	out->pace_since_ns = m->peers[node].pace.since_ns;
+	out->out_until_ns = m->peers[node].pace.out_until_ns;
 	out->answer_ns = m->peers[node].trip.mean_ns;
 }
 

@@ -15,6 +15,7 @@
 
 #include "protocol/clock_offset.h"
 #include "protocol/key.h"
+#include "protocol/pace.h"
 #include "protocol/params.h"
 
 #include "base/item.h"
@@ -44,7 +45,8 @@ enum fdp_master_event_kind {
 	FDP_MASTER_LEFT,
 	FDP_MASTER_REFUSED,  /* node asked to join and may not: reason */
 	FDP_MASTER_LATE,     /* node missed the barrier of `frame` */
-	FDP_MASTER_EVICTED,  /* node missed evict_frames in a row */
+	FDP_MASTER_EVICTED,  /* node missed evict_frames in a row, or (pace) is too slow */
+	FDP_MASTER_PACE,     /* node is slow, at half the rate, out for slowness, or in step again: pace */
 	FDP_MASTER_MISMATCH, /* node's state hash differs: ours, theirs; it gets a snapshot */
 	FDP_MASTER_SWAP,     /* SWAP(frame) was sent */
 	FDP_MASTER_WAY,      /* what is for all goes `way`; node: the first that does not hear the group */
@@ -61,6 +63,7 @@ struct fdp_master_event {
 	uint64_t ours, theirs;
 	const char *reason; /* valid during the call */
 	enum fdp_way way;
+	enum fdp_pace_state pace;
 };
 
 /*
@@ -97,6 +100,7 @@ struct fdp_master_params {
 	 */
 	int64_t probe_ns;
 	unsigned evict_frames;
+	struct fdp_pace_params pace; /* what becomes of a node that lives and is slow */
 	bool multicast;   /* there is a group: one send on the wire for all */
 	bool probe_group; /* but it is used only while every live node hears it */
 	enum fdp_swap swap;
@@ -150,6 +154,9 @@ struct fdp_share_counts {
 /* What the status page shows of a node. */
 struct fdp_peer_status {
 	enum fdp_peer_state state;
+	enum fdp_pace_state pace;
+	int64_t pace_since_ns; /* 0: in step from the first */
+	int64_t out_until_ns;  /* FDP_PACE_EVICTED: may not join before */
 	uint64_t acked;   /* last frame whose state it has applied */
 	uint64_t ready;   /* last frame it was ready for */
 	uint64_t swapped; /* frames it reported as swapped */
@@ -158,7 +165,7 @@ struct fdp_peer_status {
 	uint64_t lost;      /* fragments of DELTAs of which it says that the first copy was lost */
 	int64_t answer_ns;  /* from a DELTA to its ACK, mean; 0: not known */
 	int64_t last_heard_ns;
-	int64_t ready_after_ns;    /* last READY, from fdp_master_begin */
+	int64_t ready_after_ns;    /* last READY, from fdp_master_begin of the frame that it drew */
 	int64_t swap_local_ns;     /* node's own CLOCK_MONOTONIC when it swapped `swapped_frame` */
 	int64_t swap_ns;           /* the same by the master's clock, as estimated then; 0: not known */
 	uint32_t path_ns;          /* the last SWAP's way, until the node had it in hand; 0: not known */
@@ -219,6 +226,8 @@ void fdp_master_set_deadline(struct fdp_master *master, int64_t deadline_ns);
 /* No frame is under way: begin may be called. */
 bool fdp_master_idle(const struct fdp_master *master);
 size_t fdp_master_live(const struct fdp_master *master);
+/* Bit per node: those that count and draw every frame, none of those at half the rate. */
+uint64_t fdp_master_every_frame(const struct fdp_master *master);
 /* Nodes that wait for their snapshot or are live. */
 size_t fdp_master_present(const struct fdp_master *master);
 /* Tells all nodes that the master goes. */

@@ -72,7 +72,7 @@ static void count_out(struct fdp_master *m, unsigned node, const char *reason, i
 	peer->state = fdp_peer_next(peer->state, FDP_PEER_LEAVES);
 	if (!counted)
 		return;
-	fdp_barrier_drop(&m->barrier, node);
+	fdp_master_count_out(m, node);
 	fdp_master_say(m, &left);
 	fdp_master_finish_if_over(m, now_ns);
 }
@@ -100,6 +100,7 @@ static void admit(struct fdp_master *m, unsigned node, const struct fdp_header *
 	peer->lost = 0;
 	peer->synced = peer->wants_snapshot = false;
 	peer->missed_row = 0;
+	fdp_pace_join(&peer->pace, now_ns);
 	peer->joined_ns = now_ns;
 	peer->mismatch_frame = 0;
 	peer->refused[0] = 0;
@@ -120,6 +121,9 @@ bool fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
 		refuse(m, node, join, reason, now_ns);
 		return false;
 	}
+	/* Not refused: it may come back soon. */
+	if (!fdp_pace_may_join(&peer->pace, now_ns))
+		return false;
 	if (!header->session) {
 		welcome(m, node, join);
 		return false;

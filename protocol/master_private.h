@@ -1,6 +1,6 @@
 /*
  * Inside the master's half of FDP: master.c has the frame, master_receive.c
- * what arrives, master_clock.c time, master_join.c who may take part and
+ * what arrives, master_clock.c time, master_pace.c who does not keep up, master_join.c who may take part and
  * master_refuse.c why not, master_repair.c what is sent again, master_way.c the
  * way to all, master_share.c the light that the nodes share out.
  */
@@ -12,6 +12,7 @@
 #include "protocol/master.h"
 #include "protocol/message.h"
 #include "protocol/outbox.h"
+#include "protocol/pace.h"
 #include "protocol/peer.h"
 #include "protocol/replay.h"
 #include "protocol/session_keys.h"
@@ -59,6 +60,8 @@ struct fdp_peer {
 	uint64_t snapshot_from;  /* frame in which it was found to: what it held before is no base */
 	uint64_t mismatch_frame; /* counted once a frame */
 	unsigned missed_row;
+	int64_t missed_ns;    /* deadline of the first of these */
+	struct fdp_pace pace; /* of all its incarnations */
 	int64_t joined_ns;
 	struct fdp_bucket bulk;
 	uint32_t lost;        /* as its last report said, see fdp_report */
@@ -73,6 +76,15 @@ struct fdp_peer {
 	uint32_t path_ns[FDP_PATHS]; /* of its last SWAPs */
 	uint64_t path_count;
 	char refused[FDP_REASON_MAX];
+};
+
+/* Nodes at half the rate; see master_pace.c. */
+struct fdp_half {
+	bool shows;       /* this frame is the second of its pair */
+	uint64_t nodes;   /* of the pair */
+	uint64_t frame;   /* first of the pair, which they draw */
+	uint64_t ready;   /* for that */
+	int64_t begun_ns; /* when it did */
 };
 
 struct fdp_master {
@@ -99,6 +111,11 @@ struct fdp_master {
 	int64_t arrived_ns; /* of the next datagram, by the kernel; 0: not told */
 	unsigned echo_next; /* node whose turn it is to be answered in a datagram to all */
 	struct fdp_barrier barrier;
+	struct fdp_half half;
+	struct fdp_pace_params pace; /* complete */
+	int64_t usual_deadline_ns;
+	bool judges;       /* the frame has the usual deadline: who keeps pace shows */
+	bool waits_longer; /* the deadline was put off for who is slow and lives */
 
 	struct fdp_letter delta, snapshot;
 	uint64_t snapshot_present; /* whom the snapshot names as present */
@@ -130,6 +147,20 @@ void fdp_master_announce(struct fdp_master *m, int to, enum fdp_kind kind);
 /* To every node of the set, as one send where the wire can. */
 void fdp_master_announce_to(struct fdp_master *m, uint64_t nodes, enum fdp_kind kind);
 void fdp_master_finish_if_over(struct fdp_master *m, int64_t now_ns);
+/* The frame under way waits for these, less who is at half the rate and not done. */
+void fdp_master_start_barrier(struct fdp_master *m, uint64_t live, int64_t now_ns);
+/* A node that left, or joined anew, is waited for no more. */
+void fdp_master_count_out(struct fdp_master *m, unsigned node);
+/* Who counts and begins to draw the frame. */
+uint64_t fdp_master_draws(const struct fdp_master *m);
+/* READY for `frame` of a node that counts; true when it is the one that the barrier waits for. */
+bool fdp_master_half_ready(struct fdp_master *m, unsigned node, uint64_t frame);
+/* From the beginning of what it drew until now, when it is ready first. */
+int64_t fdp_master_ready_after(const struct fdp_master *m, unsigned node);
+/* All are ready, or nobody is waited for any longer. May put the deadline off. */
+bool fdp_master_frame_over(struct fdp_master *m, int64_t now_ns);
+/* The frame is over: who was late, who is slow, who must go. */
+void fdp_master_judge(struct fdp_master *m, int64_t now_ns);
 /* Writes head and delta since base as the plain bytes of a letter. */
 void fdp_master_write_state(struct fdp_master *m, struct fdp_letter *letter, enum fdp_kind kind,
 			    uint64_t base);

@@ -23,6 +23,8 @@ static bool state_agrees(struct fdp_master *m, unsigned node, const struct fdp_r
 		m->barrier.acked &= ~BIT(node);
 		m->barrier.ready &= ~BIT(node);
 	}
+	if (report->frame == m->half.frame)
+		m->half.ready &= ~BIT(node);
 	if (report->frame != peer->mismatch_frame || !peer->status.mismatches) {
 		peer->mismatch_frame = report->frame;
 		peer->status.mismatches++;
@@ -46,7 +48,7 @@ static void note_acked(struct fdp_master *m, unsigned node, const struct fdp_rep
 		peer->status.acked = report->frame;
 	if (report->frame == m->barrier.frame && !(m->barrier.acked & BIT(node))) {
 		m->barrier.acked |= BIT(node);
-		if (m->barrier.live & BIT(node) && m->underway)
+		if (m->barrier.draws & BIT(node) && m->underway)
 			fdp_trip_take(&peer->trip, m->now_ns - m->barrier.begun_ns);
 	}
 	if (peer->state == FDP_PEER_JOINING && !peer->synced) {
@@ -64,7 +66,7 @@ static void on_ready(struct fdp_master *m, unsigned node, const struct fdp_repor
 	if (report->frame > peer->status.ready)
 		peer->status.ready = report->frame;
 	peer->status.render_us = report->render_us;
-	if (!fdp_peer_counts(peer->state) || report->frame != m->frame)
+	if (!fdp_peer_counts(peer->state) || !fdp_master_half_ready(m, node, report->frame))
 		return;
 	if (!m->underway) {
 		/* It has not seen the SWAP: lost, unless the two have just crossed. */
@@ -75,7 +77,7 @@ static void on_ready(struct fdp_master *m, unsigned node, const struct fdp_repor
 	}
 	if (m->barrier.ready & BIT(node))
 		return;
-	peer->status.ready_after_ns = now_ns - m->barrier.begun_ns;
+	peer->status.ready_after_ns = fdp_master_ready_after(m, node);
 	peer->missed_row = 0;
 	peer->state = fdp_peer_next(peer->state, FDP_PEER_READIES);
 	m->barrier.ready |= BIT(node);

@@ -402,13 +402,15 @@ size_t fdp_state_head_encode(const struct fdp_state_head *m, uint8_t *bytes, siz
 	struct gr_writer w = gr_writer(bytes, size);
 
 	gr_write_u64(&w, m->hash);
-	gr_write_u8(&w, (uint8_t)m->flags);
+	gr_write_u8(&w, (uint8_t)(m->flags | (m->half ? FDP_HALF : 0)));
 	gr_write_varint(&w, m->frame);
 	gr_write_varint(&w, m->frame - m->previous_frame);
 	if (!(m->flags & FDP_CHAINED))
 		gr_write_u64(&w, m->previous_hash);
 	gr_write_varint(&w, m->present);
 	gr_write_varint(&w, m->present ^ m->live);
+	if (m->half)
+		gr_write_varint(&w, m->half);
 	write_since(&w, m->shared_since, m->frame);
 	if (m->shared_since)
 		gr_write_varint(&w, m->shared ^ m->live);
@@ -427,12 +429,15 @@ int fdp_state_head_decode(const uint8_t *bytes, size_t len, struct fdp_state_hea
 	out->previous_hash = out->flags & FDP_CHAINED ? 0 : gr_read_u64(&r);
 	out->present = gr_read_varint(&r);
 	out->live = out->present ^ gr_read_varint(&r);
+	out->half = out->flags & FDP_HALF ? gr_read_varint(&r) : 0;
 	out->shared_since = read_since(&r, out->frame);
 	out->shared = out->shared_since ? gr_read_varint(&r) ^ out->live : 0;
 	*out_len = r.at;
 	if (!out->shared != !out->shared_since)
 		return GR_ERR_FORMAT;
-	if (!r.ok || out->flags & ~(FDP_TWICE | FDP_CHAINED) || out->live & ~out->present ||
+	if (!out->half != !(out->flags & FDP_HALF) || out->half & ~out->live)
+		return GR_ERR_FORMAT;
+	if (!r.ok || out->flags & ~(FDP_TWICE | FDP_CHAINED | FDP_HALF) || out->live & ~out->present ||
 	    (out->frame ? out->previous_frame >= out->frame : out->previous_frame))
 		return GR_ERR_FORMAT;
 	return GR_OK;

@@ -89,6 +89,8 @@ struct fdp_nack {
  * needs it who has that frame, and that frame is the delta's base.
  */
 #define FDP_CHAINED 2u
+/* In a state's head: some of those that draw it do so at half the rate. */
+#define FDP_HALF 4u
 #define FDP_TWICE 1u /* the way is lossy: READY and NACK are worth sending twice */
 /* How old a slice is that nobody has made yet, or that is older than can be said. */
 #define FDP_AGE_NONE ((1u << 21) - 1) /* three bytes on the wire */
@@ -151,16 +153,17 @@ struct fdp_lack {
 struct fdp_state_head {
 	uint64_t frame, previous_frame;
 	uint64_t hash, previous_hash; /* previous_hash 0 with FDP_CHAINED */
-	uint64_t live, present;
-	uint32_t flags;
+	uint64_t live, present; /* draw the frame; are known */
+	uint32_t flags; /* FDP_HALF is put there by the encoder */
 	/*
 	 * Division of the light: slice i is the i-th node's in `shared`, from the
 	 * lowest bit up. Slices of frames before `shared_since` are void. Both 0
 	 * when nothing is shared.
 	 */
 	uint64_t shared, shared_since;
+	uint64_t half; /* of those that draw it, who shows it with the frame after; 0: none */
 };
-#define FDP_STATE_HEAD_MAX (1 + 2 * 8 + 6 * GR_VARINT_MOST)
+#define FDP_STATE_HEAD_MAX (1 + 2 * 8 + 7 * GR_VARINT_MOST)
 
 size_t fdp_join_encode(const struct fdp_join *m, uint8_t *bytes, size_t size);
 int fdp_join_decode(const uint8_t *bytes, size_t len, struct fdp_join *out);

@@ -70,26 +70,26 @@ static void swap_if_due(struct fdp_node *n)
 {
 	struct fdp_node_event event = { .kind = FDP_NODE_SWAP };
 
-	if (!n->current.ready || n->current.swapped || n->swap_seen < n->current.frame)
+	if (!n->current.ready || n->current.swapped || n->swap_seen < n->current.show)
 		return;
 	n->current.swapped = true;
 	event.frame = n->current.frame;
-	event.at_ns = n->swap_seen == n->current.frame ? n->swap_at_ns : 0;
+	event.at_ns = n->swap_seen == n->current.show ? n->swap_at_ns : 0;
 	n->ops.event(n->ops.ctx, &event);
 }
 
-static void start_frame(struct fdp_node *n, uint64_t frame)
+static void start_frame(struct fdp_node *n, uint64_t frame, bool half)
 {
 	/* A new frame means that the one before was swapped, even if we missed the word. */
-	if (n->current.frame && frame > n->current.frame) {
-		if (n->swap_seen < n->current.frame) {
-			n->swap_seen = n->current.frame;
+	if (n->current.frame && frame > n->current.show) {
+		if (n->swap_seen < n->current.show) {
+			n->swap_seen = n->current.show;
 			n->swap_at_ns = 0;
 		}
 		swap_if_due(n);
 	}
 	n->current = (struct fdp_node_frame){
-		.frame = frame, .hash = n->hash, .render_us = n->current.render_us
+		.frame = frame, .show = frame + half, .hash = n->hash, .render_us = n->current.render_us
 	};
 	fdp_node_say(n, FDP_NODE_FRAME, frame);
 }
@@ -136,7 +136,7 @@ static enum fdp_verdict apply(struct fdp_node *n, const struct fdp_state_head *h
 	fdp_node_share_frame(n, head);
 	send_report(n, FDP_ACK, n->applied, n->hash, now_ns);
 	if (fdp_node_in(n, head->live))
-		start_frame(n, head->frame);
+		start_frame(n, head->frame, fdp_node_in(n, head->half));
 	return FDP_GOOD;
 }
 

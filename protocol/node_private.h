@@ -21,6 +21,7 @@
 /* The frame that the daemon is told of. */
 struct fdp_node_frame {
 	uint64_t frame; /* of the last FDP_NODE_FRAME; 0: none yet */
+	uint64_t show;  /* with the swap of which it is shown: its own, at half the rate the next */
 	uint64_t hash;
 	bool ready;        /* fdp_node_ready was called for it */
 	bool swapped;      /* FDP_NODE_SWAP was said for it */

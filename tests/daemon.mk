@@ -69,10 +69,10 @@ dist_check_SCRIPTS += tests/loopback/forged.sh
 TESTS += tests/loopback/forged.sh
 dist_check_SCRIPTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh \
 	tests/loopback/group.sh tests/loopback/share_survives.sh tests/loopback/kills.sh \
-	tests/loopback/barrier.sh tests/loopback/faults.sh
+	tests/loopback/barrier.sh tests/loopback/faults.sh tests/loopback/pace.sh
 TESTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh \
 	tests/loopback/group.sh tests/loopback/share_survives.sh tests/loopback/kills.sh \
-	tests/loopback/barrier.sh tests/loopback/faults.sh
+	tests/loopback/barrier.sh tests/loopback/faults.sh tests/loopback/pace.sh
 EXTRA_DIST += tests/loopback/room.sh tests/loopback/room.cave.in tests/loopback/cell.scene
 
 check_PROGRAMS += tests/unit/test_trackers

@@ -15,6 +15,7 @@ PROTOCOL_TESTS = \
 	tests/unit/test_cluster_hostile \
 	tests/unit/test_fragment \
 	tests/unit/test_key \
+	tests/unit/test_pace \
 	tests/unit/test_pack \
 	tests/unit/test_params \
 	tests/unit/test_peer \
@@ -46,6 +47,9 @@ tests_unit_test_fragment_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_key_SOURCES = tests/unit/test_key.c tests/unit/unit.h
 tests_unit_test_key_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_key_LDADD = $(PROTOCOL_TEST_LDADD)
+tests_unit_test_pace_SOURCES = tests/unit/test_pace.c $(CLUSTER_SIM_SOURCES)
+tests_unit_test_pace_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_unit_test_pace_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_pack_SOURCES = tests/unit/test_pack.c tests/unit/unit.h
 tests_unit_test_pack_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_pack_LDADD = $(PROTOCOL_TEST_LDADD)

@@ -33,20 +33,38 @@ static void print_skew(struct json_object *status, const char *what, const char 
 		print_histogram(status, what, member);
 }
 
+#define PACE_MAX 64
+
+/* Whether it keeps up, since when it does not, and when one that was left out for that may come back. */
+static void pace_of(struct json_object *node, char text[PACE_MAX])
+{
+	const double for_s = report_number(node, "pace_for_s"), out_s = report_number(node, "out_for_s");
+
+	if (report_member(node, "out_for_s"))
+		snprintf(text, PACE_MAX, "out for %.0f s more", out_s);
+	else if (report_member(node, "pace_for_s"))
+		snprintf(text, PACE_MAX, "%s %.0f s", report_text(node, "pace"), for_s);
+	else
+		snprintf(text, PACE_MAX, "%s", report_text(node, "pace"));
+}
+
 static void print_nodes(struct json_object *status)
 {
+	char pace[PACE_MAX];
+
 	struct json_object *nodes = report_member(status, "nodes");
 	size_t count = json_object_is_type(nodes, json_type_array)
 			       ? json_object_array_length(nodes) : 0;
 
-	printf("\n%-14s %-14s %-8s %10s %8s %8s %10s %10s %9s %8s\n", "node", "wall", "state", "swapped",
+	printf("\n%-14s %-14s %-8s %-20s %10s %8s %8s %10s %10s %9s %8s\n", "node", "wall", "state", "pace", "swapped",
 	       "missed", "differed", "ready ms", "render ms", "clock us", "ppm");
 	for (size_t i = 0; i < count; i++) {
 		struct json_object *node = json_object_array_get_idx(nodes, i);
 
-		printf("%-14s %-14s %-8s %10lld %8lld %8lld %10.2f %10.2f",
+		pace_of(node, pace);
+		printf("%-14s %-14s %-8s %-20s %10lld %8lld %8lld %10.2f %10.2f",
 		       report_text(node, "name"), report_text(node, "wall"),
-		       report_text(node, "state"), (long long)report_count(node, "swapped"),
+		       report_text(node, "state"), pace, (long long)report_count(node, "swapped"),
 		       (long long)report_count(node, "missed"),
 		       (long long)report_count(node, "mismatches"),
 		       report_number(node, "ready_after_ms"), report_number(node, "render_ms"));

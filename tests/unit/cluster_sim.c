@@ -47,6 +47,7 @@ void sim_start_master(struct sim *s)
 		.datagram_max = s->datagram_max,
 		.deadline_ns = SIM_DEADLINE_NS,
 		.evict_frames = s->evict_frames,
+		.pace = s->pace,
 		.multicast = s->multicast,
 		.swap = s->swap,
 		.swap_lead_most_ns = SIM_LEAD_MOST_NS,

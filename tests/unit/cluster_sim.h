@@ -71,6 +71,7 @@ struct sim {
 	bool multicast, lamps; /* lamps: the larger parameters change every frame too */
 	bool still, wand;      /* nothing but time changes; all that is tracked does */
 	unsigned evict_frames;
+	struct fdp_pace_params pace;
 	int64_t byte_ns;      /* that a byte takes on the master's link; 0: none */
 	int64_t link_free_ns; /* when the link has sent all that is queued */
 
@@ -92,6 +93,7 @@ struct sim {
 	int64_t begin_at_ns, begun_ns;
 	struct param_state states[SIM_STATES]; /* that the master said, by frame */
 	uint64_t swapped, joined, left, late, evicted, mismatches, refused;
+	uint64_t paced[4]; /* FDP_MASTER_PACE, by state */
 	uint64_t fresh; /* datagrams that the master took as no recording */
 	uint64_t to_group, ways; /* datagrams to the group; FDP_MASTER_WAY */
 	enum fdp_way way;	 /* of the last of these, and whom it named */

@@ -37,6 +37,7 @@ void sim_master_event(void *ctx, const struct fdp_master_event *e)
 		break;
 	case FDP_MASTER_LATE: s->late++; break;
 	case FDP_MASTER_EVICTED: s->evicted++; break;
+	case FDP_MASTER_PACE: s->paced[e->pace]++; break;
 	case FDP_MASTER_MISMATCH: s->mismatches++; break;
 	case FDP_MASTER_WAY:
 		s->ways++;

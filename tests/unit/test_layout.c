@@ -184,6 +184,15 @@ static const struct fault faults[] = {
 	{ "mtu = 1500", "key_file = \"\"", "key_file", "network.key_file", "empty; leave the key out", 1 },
 	{ "mtu = 1500", "key_file = \"a\\nb\"", "key_file", "network.key_file",
 	  "holds a control character (byte 10)", 1 },
+	/* who does not keep up */
+	{ "mtu = 1500; };", "mtu = 1500; };\nslow = { policy = \"drop\"; };", "slow =", "slow.policy",
+	  "\"drop\" is not known; one of \"evict\", \"wait\", \"half\"", 1 },
+	{ "mtu = 1500; };", "mtu = 1500; };\nslow = { limit_ms = 50.5; };", "slow =", "slow.limit_ms",
+	  "50.5 ms, but nobody waits longer than rates.barrier_deadline_ms, 50", 1 },
+	{ "mtu = 1500; };", "mtu = 1500; };\nslow = { policy = \"wait\"; limit_ms = 1001.0; };", "slow =",
+	  "slow.limit_ms", "1001 ms, but nobody waits longer than wait_most_ms, 1000", 1 },
+	{ "mtu = 1500; };", "mtu = 1500; };\nslow = { policy = \"wait\"; wait_most_ms = 49.0; };", "slow =",
+	  "slow.wait_most_ms", "49 ms is less than all wait anyway (rates.barrier_deadline_ms, 50)", 1 },
 	/* the rest */
 	{ "name = \"room\"", "control_socket = \"control\"", "control_socket", "control_socket",
 	  "\"control\" is not absolute", 1 },
@@ -264,6 +273,8 @@ static void test_base(void **state)
 	assert_float_equal(layout->walls[1].upper_left[2], -1.5, 1e-6);
 	assert_null(layout_key_path(layout));
 	assert_int_equal(layout->rates.barrier_deadline_ns, 50000000);
+	assert_int_equal(layout->slow.policy, LAYOUT_SLOW_EVICT);
+	assert_int_equal(layout->slow.limit_ns, 0);
 	layout_destroy(&layout);
 	assert_null(layout);
 	layout_destroy(&layout);
@@ -398,6 +409,7 @@ static const char full[] =
 	"	master_address = \"2001:db8::9\"; master_port = 3000; ttl = 4; mtu = 8999; key_file = \"k/key\"; };\n"
 	"rates = { frame_hz = 119.88; barrier_deadline_ms = 8.123457; evict_frames = 7;\n"
 	"	display_latency_ms = 12.3; };\n"
+	"slow = { policy = \"wait\"; limit_ms = 7.5; frames = 33; wait_most_ms = 123.4; rejoin_most_s = 12.5; };\n"
 	"start = { head = [0.1, 1.61, 0.2]; head_heading_deg = 13.1; head_pitch_deg = -3.7;\n"
 	"	head_roll_deg = 1.9; wand = [0.3, 1.1, -0.2]; wand_heading_deg = -20.2;\n"
 	"	wand_pitch_deg = 33.3; wand_roll_deg = 4.4; };\n"
@@ -424,6 +436,11 @@ static void test_round_trip(void **state)
 	assert_string_equal(layout->nodes[3].name, "v");
 	assert_int_equal(layout->trackers[0].sim.seed, 4294967295u);
 	assert_int_equal(layout->rates.barrier_deadline_ns, 8123457);
+	assert_int_equal(layout->slow.policy, LAYOUT_SLOW_WAIT);
+	assert_int_equal(layout->slow.limit_ns, 7500000);
+	assert_int_equal(layout->slow.frames, 33);
+	assert_int_equal(layout->slow.wait_most_ns, 123400000);
+	assert_int_equal(layout->slow.rejoin_most_ns, INT64_C(12500000000));
 	assert_string_equal(layout->control_socket, "/tmp/a \"b\\.sock");
 	assert_true(gr_pose_valid(&layout->start_head));
 	key = layout_key_path(layout);
@@ -455,6 +472,7 @@ static void test_hash(void **state)
 		{ "key_file = \"k/key\"", "key_file = \"/k\"", false },
 		{ "mtu = 8999", "mtu = 8998", true },
 		{ "evict_frames = 7", "evict_frames = 8", true },
+		{ "policy = \"wait\"", "policy = \"evict\"", false },
 		{ "head_roll_deg = 1.9", "head_roll_deg = 2.0", true },
 		{ "max = [2.0, 2.9, 3.0]", "max = [2.0, 2.9, 3.1]", true },
 		{ "walk_radius_m = 0.77", "walk_radius_m = 0.78", false },

@@ -294,6 +294,9 @@ static const struct sample samples[] = {
 	{ "chained state head", 17, true,
 	  { .head = { 9, 8, UINT64_C(0xdeadbeefcafebabe), 0, 0x0f, 0xff, FDP_CHAINED, 0x0f, 5 } },
 	  enc_state_head, dec_state_head },
+	{ "state head, two at half the rate", 26, true,
+	  { .head = { 9, 8, UINT64_C(0xdeadbeefcafebabe), 6, 0x0f, 0xff, FDP_TWICE, 0x0f, 5, 0x05 } },
+	  enc_state_head, dec_state_head },
 	{ "leave", 8, false, { .leave = 99 }, enc_leave, dec_leave },
 };
 
