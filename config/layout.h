@@ -46,6 +46,13 @@ enum layout_cast {
 	LAYOUT_AUTO, /* multicast while every node hears it, else unicast */
 };
 
+/* Whether what is sent to all is sent with parity, so that losses need no repair. */
+enum layout_parity {
+	LAYOUT_PARITY_AUTO, /* while datagrams get lost */
+	LAYOUT_PARITY_OFF,
+	LAYOUT_PARITY_ON,
+};
+
 /* One projected wall. Corners as the person inside sees them. */
 struct layout_wall {
 	char name[LAYOUT_NAME_MAX];
@@ -79,6 +86,7 @@ struct layout_network {
 	int ttl;
 	bool loop;      /* the group is heard on the sending machine, too */
 	int mtu;        /* bytes of an IP packet */
+	enum layout_parity parity; /* the master's to decide: nodes need not have it alike */
 	char *key_file; /* absolute, or relative to the layout file; NULL: unkeyed, loopback only */
 	int key_file_line; /* in the file, 0 without one */
 };

@@ -7,6 +7,7 @@ static const char *const node_eyes_choices[] = { "mono", "quad-buffer", "side-by
 static const char *const eye_choices[] = { "left", "right", NULL };
 static const char *const target_choices[] = { "headless", "window", "fullscreen", NULL };
 static const char *const cast_choices[] = { "unicast", "multicast", "broadcast", "auto", NULL };
+static const char *const parity_choices[] = { "auto", "off", "on", NULL };
 static const char *const swap_choices[] = { "auto", "message", "scheduled", "hardware", NULL };
 static const char *const orphan_choices[] = { "hold", "black", "test", NULL };
 static const char *const slow_choices[] = { "evict", "wait", "half", NULL };
@@ -104,6 +105,9 @@ static const struct option network_options[] = {
 	{ .key = "mtu", .type = OPTION_INT, .min = 576, .max = 9000, .standard = "1500",
 	  .unit = "bytes", AT(layout_file_network, network.mtu),
 	  .help = "largest IP packet that the room's net carries whole" },
+	{ .key = "parity", .type = OPTION_CHOICE, .choices = parity_choices, .standard = "auto",
+	  AT(layout_file_network, network.parity),
+	  .help = "parity fragments with states of several datagrams, so that what is lost need not be asked for: while losses are seen, never, always" },
 	{ .key = "key_file", .type = OPTION_STRING, AT(layout_file_network, network.key_file),
 	  .help = "file with the cluster's key; only a room on loopback may do without" },
 	{ .key = NULL },

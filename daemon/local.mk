@@ -10,6 +10,7 @@ daemon_libgdaemon_a_SOURCES = \
 	daemon/frame_source.h \
 	daemon/live_source.c daemon/live_source.h \
 	daemon/loop.c daemon/loop.h \
+	daemon/master_params.h \
 	daemon/master_settings.c daemon/master_settings.h \
 	daemon/master_state.c daemon/master_state.h \
 	daemon/node_frame.c daemon/node_frame.h \

@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/result.h"
 #include "daemon/master_pace.h"
+#include "daemon/master_params.h"
 #include "protocol/message.h"
 
 #include <errno.h>
@@ -438,18 +439,6 @@ static void on_second(void *ctx, int64_t now_ns)
 	advance(m);
 }
 
-/* By the driver's barrier a node's word is as good as a time: it waits for the others itself. */
-static enum fdp_swap swap_of(enum layout_swap_mode mode)
-{
-	switch (mode) {
-	case LAYOUT_SWAP_AUTO: return FDP_SWAP_AUTO;
-	case LAYOUT_SWAP_SCHEDULED: return FDP_SWAP_SCHEDULED;
-	case LAYOUT_SWAP_MESSAGE:
-	case LAYOUT_SWAP_HARDWARE: break;
-	}
-	return FDP_SWAP_MESSAGE;
-}
-
 static int create_protocol(struct master *m)
 {
 	const struct layout *layout = m->params.layout;
@@ -464,7 +453,8 @@ static int create_protocol(struct master *m)
 		.pace = master_pace_params(layout),
 		.multicast = net_has_group(m->net),
 		.probe_group = net_has_group(m->net) && layout->network.cast == LAYOUT_AUTO,
-		.swap = swap_of(layout->swap.mode),
+		.parity = master_parity(layout->network.parity),
+		.swap = master_swap(layout->swap.mode),
 		.swap_lead_most_ns = llrint((double)layout->swap.lead_most * (double)m->period_ns),
 		.share_bytes = m->params.scene->gi.share == SCENE_SHARE_CLUSTER ? FDP_SHARE_MAX : 0,
 	};

@@ -79,6 +79,7 @@ static void write_node(struct json *json, const struct master *m, size_t i, int6
 	json_u64(json, "swapped", peer.swapped);
 	json_u64(json, "missed", peer.missed);
 	json_u64(json, "lost", peer.lost);
+	json_f64(json, "loss", peer.loss);
 	json_f64(json, "answer_us", (double)peer.answer_ns * 1e-3);
 	json_u64(json, "mismatches", peer.mismatches);
 	json_u64(json, "swapped_frame", peer.swapped_frame);
@@ -107,6 +108,22 @@ static void write_way(struct json *json, const struct master *m)
 		json_string(json, "deaf", "master");
 }
 
+static void write_parity(struct json *json, const struct master *m, const struct fdp_counters *c)
+{
+	static const char *const modes[] = { [LAYOUT_PARITY_AUTO] = "auto", [LAYOUT_PARITY_OFF] = "off",
+					     [LAYOUT_PARITY_ON] = "on" };
+	unsigned fragments, parity;
+
+	fdp_master_fragments(m->fdp, &fragments, &parity);
+	json_open(json, "parity", '{');
+	json_string(json, "mode", modes[m->params.layout->network.parity]);
+	json_u64(json, "fragments", fragments);
+	json_u64(json, "parity", parity);
+	json_u64(json, "sent", c->parity);
+	json_u64(json, "bytes", c->parity_bytes);
+	json_close(json, '}');
+}
+
 static void write_wire(struct json *json, const struct master *m)
 {
 	struct fdp_counters c;
@@ -121,6 +138,7 @@ static void write_wire(struct json *json, const struct master *m)
 	json_u64(json, "datagrams_in", c.datagrams_in);
 	json_u64(json, "repairs", c.repairs);
 	json_u64(json, "packed", c.packed);
+	write_parity(json, m, &c);
 	json_u64(json, "send_failed", net.send_failed);
 	write_way(json, m);
 	json_open(json, "bad", '{');

@@ -18,6 +18,7 @@ static void write_wire(struct json *json, const struct node *n)
 	json_u64(json, "datagrams_out", c.datagrams_out);
 	json_u64(json, "datagrams_in", c.datagrams_in);
 	json_u64(json, "repairs", c.repairs);
+	json_u64(json, "healed", c.healed);
 	json_u64(json, "send_failed", net.send_failed);
 	json_open(json, "bad", '{');
 	json_u64(json, "short", c.bad_short);

@@ -6,10 +6,12 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/delta.c \
 	protocol/fragment.c protocol/fragment.h \
 	protocol/key.c protocol/key.h \
+	protocol/loss.h \
 	protocol/master.c protocol/master.h protocol/master_private.h \
 	protocol/master_clock.c \
 	protocol/master_join.c \
 	protocol/master_pace.c \
+	protocol/master_parity.c \
 	protocol/master_receive.c \
 	protocol/master_refuse.c \
 	protocol/master_repair.c \
@@ -23,6 +25,7 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/outbox.c protocol/outbox.h \
 	protocol/pack.c protocol/pack.h \
 	protocol/pace.c protocol/pace.h \
+	protocol/parity.c protocol/parity.h \
 	protocol/params.c protocol/params.def protocol/params.h protocol/state.h \
 	protocol/peer.c protocol/peer.h \
 	protocol/replay.h \
@@ -30,4 +33,4 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/trip.h \
 	protocol/session_keys.c protocol/session_keys.h \
 	protocol/wire.c protocol/wire.h
-protocol_libgprotocol_a_CFLAGS = $(AM_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS)
+protocol_libgprotocol_a_CFLAGS = $(AM_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS) $(ISAL_CFLAGS)

@@ -244,12 +244,12 @@ static uint64_t common_base(const struct fdp_master *m, uint64_t live)
 
 /*
  * On a lossy wire the last fragment goes twice: it has no successor whose
- * arrival would show that it is missing.
+ * arrival would show that it is missing. With parity any may be missing.
  */
 static void send_delta(struct fdp_master *m, int to)
 {
 	fdp_outbox_post(&m->out, to, &m->delta);
-	if (fdp_master_twice(m))
+	if (fdp_master_twice(m) && !m->delta.parity)
 		fdp_outbox_again(&m->out, to, &m->delta, m->delta.count - 1u);
 }
 
@@ -308,6 +308,7 @@ int fdp_master_begin(struct fdp_master *m, const struct param_state *state, uint
 	remember_hash(m);
 	m->loss -= m->loss > 0;
 	m->asked_ns = now_ns;
+	fdp_master_measure_loss(m);
 	promote_joiners(m);
 	live = fdp_master_mask(m, fdp_peer_counts);
 	m->underway = true;
@@ -318,6 +319,7 @@ int fdp_master_begin(struct fdp_master *m, const struct param_state *state, uint
 	fdp_master_share_begin(m, live);
 	if (live) {
 		fdp_master_write_state(m, &m->delta, FDP_DELTA, common_base(m, live));
+		fdp_outbox_protect(&m->out, &m->delta, fdp_master_parity(m, m->delta.count));
 		send_delta_to(m, live);
 	}
 	refresh_snapshots(m, now_ns);

@@ -86,6 +86,13 @@ enum fdp_swap {
 /* A clock that may be off by more than this is no good for a time to swap at. */
 #define FDP_SWAP_ERROR_MOST_NS INT64_C(1000000)
 
+/* Whether a DELTA of several fragments has parity fragments (parity.h, loss.h). */
+enum fdp_parity {
+	FDP_PARITY_AUTO, /* while datagrams get lost: as many as what is lost asks for */
+	FDP_PARITY_OFF,
+	FDP_PARITY_ON,   /* also before the first loss */
+};
+
 struct fdp_master_params {
 	uint64_t session; /* random, new at every start, not 0 */
 	uint8_t key[FDP_KEY_BYTES];
@@ -103,6 +110,7 @@ struct fdp_master_params {
 	struct fdp_pace_params pace; /* what becomes of a node that lives and is slow */
 	bool multicast;   /* there is a group: one send on the wire for all */
 	bool probe_group; /* but it is used only while every live node hears it */
+	enum fdp_parity parity;
 	enum fdp_swap swap;
 	int64_t swap_lead_most_ns; /* a swap's time is at most so far ahead of its SWAP */
 	/* Room for the light that nodes share out, all slices together; 0: none is, slices are bad. At most FDP_SHARE_MAX. */
@@ -132,6 +140,8 @@ struct fdp_master_ops {
 struct fdp_counters {
 	uint64_t datagrams_out, bytes_out, datagrams_in, bytes_in;
 	uint64_t repairs;      /* fragments sent again */
+	/* Parity fragments sent, their datagrams' bytes, and fragments that they gave (on a node). */
+	uint64_t parity, parity_bytes, healed;
 	uint64_t packed;       /* messages sent in LZO form */
 	uint64_t bad_short, bad_version, bad_auth, bad_session, bad_format, bad_replay;
 };
@@ -163,6 +173,7 @@ struct fdp_peer_status {
 	uint64_t missed;  /* barriers missed since it joined */
 	uint64_t mismatches;
 	uint64_t lost;      /* fragments of DELTAs of which it says that the first copy was lost */
+	double loss;        /* that share of them, of late; 0 while nothing is lost */
 	int64_t answer_ns;  /* from a DELTA to its ACK, mean; 0: not known */
 	int64_t last_heard_ns;
 	int64_t ready_after_ns;    /* last READY, from fdp_master_begin of the frame that it drew */
@@ -239,6 +250,8 @@ void fdp_master_clock(const struct fdp_master *master, size_t node, int64_t now_
 		      struct fdp_clock_estimate *out);
 void fdp_master_counters(const struct fdp_master *master, struct fdp_counters *out);
 enum fdp_way fdp_master_way(const struct fdp_master *master);
+/* Fragments and parity fragments of the last DELTA. */
+void fdp_master_fragments(const struct fdp_master *master, unsigned *out_count, unsigned *out_parity);
 /* Also among how many nodes the light is divided in this frame, 0: it is not. */
 unsigned fdp_master_share(const struct fdp_master *master, struct fdp_share_counts *out);
 

@@ -97,7 +97,8 @@ static void admit(struct fdp_master *m, unsigned node, const struct fdp_header *
 	};
 	fdp_master_clock_forget(peer);
 	peer->trip = (struct fdp_trip){ 0, 0 };
-	peer->lost = 0;
+	peer->lost = peer->lost_now = 0;
+	peer->loss = (struct fdp_loss){ 0 };
 	peer->synced = peer->wants_snapshot = false;
 	peer->missed_row = 0;
 	fdp_pace_join(&peer->pace, now_ns);

@@ -1,14 +1,16 @@
 /*
  * Inside the master's half of FDP: master.c has the frame, master_receive.c
- * what arrives, master_clock.c time, master_pace.c who does not keep up, master_join.c who may take part and
- * master_refuse.c why not, master_repair.c what is sent again, master_way.c the
- * way to all, master_share.c the light that the nodes share out.
+ * what arrives, master_clock.c time, master_pace.c who does not keep up, master_join.c
+ * who may take part and master_refuse.c why not, master_repair.c what is sent again,
+ * master_parity.c what is sent ahead of losses, master_way.c the way to all,
+ * master_share.c the light that the nodes share out.
  */
 #ifndef GROTTO_PROTOCOL_MASTER_PRIVATE_H
 #define GROTTO_PROTOCOL_MASTER_PRIVATE_H
 
 #include "protocol/barrier.h"
 #include "protocol/bucket.h"
+#include "protocol/loss.h"
 #include "protocol/master.h"
 #include "protocol/message.h"
 #include "protocol/outbox.h"
@@ -65,6 +67,8 @@ struct fdp_peer {
 	int64_t joined_ns;
 	struct fdp_bucket bulk;
 	uint32_t lost;        /* as its last report said, see fdp_report */
+	uint32_t lost_now;    /* said since the last frame began */
+	struct fdp_loss loss;
 	struct fdp_trip trip; /* from a DELTA to its ACK */
 	int64_t snapshot_ns; /* last sent */
 	int64_t told_ns;     /* a dead one was told so */
@@ -181,6 +185,10 @@ void fdp_master_want_snapshot(struct fdp_master *m, unsigned node);
 void fdp_master_on_nack(struct fdp_master *m, unsigned node, const struct fdp_nack *nack,
 			int64_t now_ns);
 void fdp_master_begin_repairs(struct fdp_master *m);
+/* A frame begins, its DELTA is not written yet: what was lost of the one before. */
+void fdp_master_measure_loss(struct fdp_master *m);
+/* How many parity fragments a DELTA of so many fragments is to have. */
+unsigned fdp_master_parity(const struct fdp_master *m, unsigned count);
 void fdp_master_saw_loss(struct fdp_master *m);
 /* How long to wait for an answer of all of these nodes before asking again. */
 int64_t fdp_master_wait(const struct fdp_master *m, uint64_t nodes);

@@ -120,6 +120,7 @@ static void note_losses(struct fdp_master *m, unsigned node, const struct fdp_re
 		return;
 	peer->lost = report->lost;
 	peer->status.lost += more;
+	peer->lost_now += more;
 	fdp_master_saw_loss(m);
 }
 

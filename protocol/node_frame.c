@@ -185,15 +185,16 @@ static enum fdp_verdict take_state(struct fdp_node *n, const struct fdp_header *
 	return apply(n, &head, h->sequence, delta, len, base, now_ns);
 }
 
-static void nack_gap(struct fdp_node *n, struct fdp_reassembly *r, unsigned index, int64_t now_ns)
+static void nack_gap(struct fdp_node *n, struct fdp_reassembly *r, const struct fdp_header *h,
+		     int64_t now_ns)
 {
 	struct fdp_nack nack = { .message = r->message, .count = r->count };
 
-	if (fdp_reassembly_gap(r, index, nack.missing))
+	if (fdp_reassembly_gap(r, h, nack.missing))
 		send_nack(n, &nack, now_ns);
 }
 
-/* Fragments under `below`. */
+/* Fragments under `below`, as many as it lacks. */
 static void nack_missing(struct fdp_node *n, const struct fdp_reassembly *r, unsigned below,
 			 int64_t now_ns)
 {
@@ -265,9 +266,10 @@ enum fdp_verdict fdp_node_on_state(struct fdp_node *n, const struct fdp_header *
 		return FDP_GOOD;
 	case FDP_FRAGMENT_PART:
 		n->nacked_ns = now_ns; /* the rest may be on its way */
-		nack_gap(n, r, h->index, now_ns);
+		nack_gap(n, r, h, now_ns);
 		return FDP_GOOD;
 	case FDP_FRAGMENT_WHOLE:
+		n->counters.healed += r->healed;
 		break;
 	}
 	if (!r->packed)

@@ -1,5 +1,7 @@
 #include "protocol/outbox.h"
 
+#include "protocol/parity.h"
+
 #include "base/result.h"
 
 #include <sodium.h>
@@ -76,6 +78,7 @@ void fdp_outbox_letter(struct fdp_outbox *out, struct fdp_letter *letter, enum f
 	letter->number = ++out->message;
 	letter->plain_len = letter->len = (uint32_t)plain_len;
 	letter->count = (uint16_t)plain_count;
+	letter->parity = 0;
 	letter->packed = false;
 	if (plain_count == 1 || fdp_pack(out->packer, letter->bytes, plain_len, &packed, &packed_len))
 		return;
@@ -88,11 +91,33 @@ void fdp_outbox_letter(struct fdp_outbox *out, struct fdp_letter *letter, enum f
 	out->counters->packed++;
 }
 
+void fdp_outbox_protect(const struct fdp_outbox *out, struct fdp_letter *letter, unsigned parity)
+{
+	const size_t chunk = out->datagram_max - FDP_HEADER_BYTES;
+
+	letter->parity = (uint16_t)parity;
+	if (!parity)
+		return;
+	memset(letter->bytes + letter->len, 0, chunk * letter->count - letter->len);
+	fdp_parity_make(letter->bytes, chunk, letter->count, parity, letter->parity_bytes);
+}
+
+/* Where fragment or parity fragment `index` stands, and its length. */
+static const uint8_t *part(const struct fdp_outbox *out, const struct fdp_letter *letter,
+			   unsigned index, size_t *len)
+{
+	if (index < letter->count)
+		return letter->bytes + fdp_fragment_at(letter->len, out->datagram_max, index, len);
+	*len = out->datagram_max - FDP_HEADER_BYTES;
+	return letter->parity_bytes + *len * (index - letter->count);
+}
+
 static void send_fragment(struct fdp_outbox *out, int to, const struct fdp_letter *letter,
 			  unsigned index, bool again)
 {
 	size_t len;
-	const size_t at = fdp_fragment_at(letter->len, out->datagram_max, index, &len);
+	const uint8_t *bytes = part(out, letter, index, &len);
+	const uint64_t copies = to == FDP_TO_ALL ? out->fan_out : 1;
 	struct fdp_header header = {
 		.kind = letter->kind,
 		.packed = letter->packed,
@@ -100,12 +125,17 @@ static void send_fragment(struct fdp_outbox *out, int to, const struct fdp_lette
 		.payload_len = (uint16_t)len,
 		.index = (uint16_t)index,
 		.count = letter->count,
+		.parity = letter->parity,
 		.message = letter->number,
 		.message_len = letter->len,
 		.plain_len = letter->plain_len,
 	};
 
-	memcpy(fdp_outbox_body(out), letter->bytes + at, len);
+	if (index >= letter->count) {
+		out->counters->parity += copies;
+		out->counters->parity_bytes += copies * (FDP_HEADER_BYTES + len);
+	}
+	memcpy(fdp_outbox_body(out), bytes, len);
 	send_sealed(out, to, &header);
 }
 
@@ -123,6 +153,6 @@ void fdp_outbox_again(struct fdp_outbox *out, int to, const struct fdp_letter *l
 
 void fdp_outbox_post(struct fdp_outbox *out, int to, const struct fdp_letter *letter)
 {
-	for (unsigned i = 0; i < letter->count; i++)
+	for (unsigned i = 0; i < (unsigned)letter->count + letter->parity; i++)
 		fdp_outbox_fragment(out, to, letter, i);
 }

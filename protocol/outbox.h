@@ -14,9 +14,10 @@ struct fdp_letter {
 	uint64_t number; /* of the message; 0: nothing here */
 	uint64_t frame;
 	bool packed;
-	uint16_t count;
+	uint16_t count, parity;
 	uint32_t len, plain_len;
-	uint8_t bytes[FDP_MESSAGE_MAX];
+	uint8_t bytes[FDP_PADDED_MAX];
+	uint8_t parity_bytes[FDP_MESSAGE_MAX]; /* of `parity` parity fragments */
 };
 
 struct fdp_outbox {
@@ -43,15 +44,19 @@ uint8_t *fdp_outbox_body(struct fdp_outbox *out);
 void fdp_outbox_send(struct fdp_outbox *out, int to, enum fdp_kind kind, size_t body_len);
 /*
  * Makes a letter of the plain bytes that stand in letter->bytes: gives it a
- * number and packs it where that saves datagrams.
+ * number and packs it where that saves datagrams. It has no parity.
  */
 void fdp_outbox_letter(struct fdp_outbox *out, struct fdp_letter *letter, enum fdp_kind kind,
 		       uint64_t frame, size_t plain_len);
+/* Gives a letter that was not sent yet so many parity fragments, at most fdp_parity_most(). */
+void fdp_outbox_protect(const struct fdp_outbox *out, struct fdp_letter *letter, unsigned parity);
+/* From letter->count on: parity fragments. */
 void fdp_outbox_fragment(struct fdp_outbox *out, int to, const struct fdp_letter *letter,
 			 unsigned index);
 /* The same once more, marked so: who has it from this one has lost the first. */
 void fdp_outbox_again(struct fdp_outbox *out, int to, const struct fdp_letter *letter,
 		      unsigned index);
+/* All of it, its parity last. */
 void fdp_outbox_post(struct fdp_outbox *out, int to, const struct fdp_letter *letter);
 
 #endif

@@ -102,7 +102,8 @@ void fdp_wire_seal(const struct fdp_header *header, const uint8_t key[FDP_KEY_BY
 	gr_write_u16(&w, header->sender);
 	gr_write_u16(&w, header->payload_len);
 	gr_write_u16(&w, header->index);
-	gr_write_u16(&w, header->count);
+	gr_write_u8(&w, (uint8_t)header->count);
+	gr_write_u8(&w, (uint8_t)header->parity);
 	gr_write_u64(&w, header->session);
 	gr_write_u64(&w, header->sequence);
 	gr_write_u64(&w, header->message);
@@ -125,7 +126,8 @@ static bool read_fields(struct gr_reader *r, struct fdp_header *out)
 	out->sender = gr_read_u16(r);
 	out->payload_len = gr_read_u16(r);
 	out->index = gr_read_u16(r);
-	out->count = gr_read_u16(r);
+	out->count = gr_read_u8(r);
+	out->parity = gr_read_u8(r);
 	out->session = gr_read_u64(r);
 	out->sequence = gr_read_u64(r);
 	out->message = gr_read_u64(r);
@@ -141,6 +143,8 @@ static bool lengths_right(const struct fdp_header *h, size_t len)
 	if (h->plain_len > FDP_MESSAGE_MAX || !fdp_fragment_chunk(h))
 		return false;
 	if (h->packed ? h->plain_len <= h->message_len : h->plain_len != h->message_len)
+		return false;
+	if (h->parity && h->kind != FDP_DELTA)
 		return false;
 	return (1u << h->kind & LONG_KINDS) || (h->count == 1 && !h->packed);
 }

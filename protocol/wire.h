@@ -16,7 +16,7 @@
 
 #include "protocol/master.h"
 
-#define FDP_VERSION 3
+#define FDP_VERSION 4
 #define FDP_HEADER_BYTES 64
 #define FDP_MAC_AT 48
 #define FDP_MAC_BYTES 16
@@ -24,7 +24,8 @@
 #define FDP_DATAGRAM_MIN 448   /* least datagram_max: a JOIN, or a SWAP of 64 slices, in one piece */
 #define FDP_DATAGRAM_MAX 65507 /* what UDP over IPv4 can hold */
 #define FDP_MESSAGE_MAX 65536
-#define FDP_FRAGMENTS_MAX 512
+#define FDP_FRAGMENTS_MAX 192 /* enough for the longest message in the smallest datagrams */
+#define FDP_PARITY_MAX 32     /* parity fragments of one message, see parity.h */
 /*
  * What is asked again within a frame is asked every probe interval, as often
  * as a deadline of the usual length has them; then ever more rarely, down to
@@ -69,7 +70,8 @@ struct fdp_header {
 	uint8_t to;      /* one more than the node that it is for; 0: all, the master, or a handshake */
 	uint16_t sender; /* node index, or FDP_SENDER_MASTER */
 	uint16_t payload_len;
-	uint16_t index, count; /* fragment */
+	/* Fragment; from count on it is one of `parity` parity fragments of the message. */
+	uint16_t index, count, parity;
 	uint64_t session;      /* 0 only in the first JOIN */
 	uint64_t sequence;     /* per sender and session, never twice */
 	uint64_t message;      /* numbers the sender's messages, rising */

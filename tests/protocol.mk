@@ -17,6 +17,7 @@ PROTOCOL_TESTS = \
 	tests/unit/test_key \
 	tests/unit/test_pace \
 	tests/unit/test_pack \
+	tests/unit/test_parity \
 	tests/unit/test_params \
 	tests/unit/test_peer \
 	tests/unit/test_share \
@@ -50,6 +51,9 @@ tests_unit_test_key_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_pace_SOURCES = tests/unit/test_pace.c $(CLUSTER_SIM_SOURCES)
 tests_unit_test_pace_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_pace_LDADD = $(PROTOCOL_TEST_LDADD)
+tests_unit_test_parity_SOURCES = tests/unit/test_parity.c tests/unit/unit.h
+tests_unit_test_parity_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_unit_test_parity_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_pack_SOURCES = tests/unit/test_pack.c tests/unit/unit.h
 tests_unit_test_pack_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_pack_LDADD = $(PROTOCOL_TEST_LDADD)

@@ -136,6 +136,19 @@ static void print_share(struct json_object *status)
 	       (long long)report_count(status, "share.repairs"));
 }
 
+/* What is sent ahead of losses, and what that costs. */
+static void print_parity(struct json_object *status)
+{
+	const long long sent = report_count(status, "wire.parity.sent");
+
+	if (sent)
+		printf("parity: %lld with the last state's %lld fragments; in all %lld, %.1f %% of the bytes sent\n",
+		       (long long)report_count(status, "wire.parity.parity"),
+		       (long long)report_count(status, "wire.parity.fragments"), sent,
+		       100 * (double)report_count(status, "wire.parity.bytes") /
+			       (double)report_count(status, "wire.bytes_out"));
+}
+
 static void print_bad(struct json_object *status)
 {
 	struct json_object *bad = report_member(status, "wire.bad");
@@ -184,6 +197,7 @@ static void print_status(struct json_object *status)
 	       (long long)report_count(status, "wire.bytes_out"),
 	       (long long)report_count(status, "wire.repairs"),
 	       (long long)report_count(status, "wire.bytes_in"));
+	print_parity(status);
 	print_light(status);
 	print_share(status);
 	print_bad(status);

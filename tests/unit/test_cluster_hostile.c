@@ -412,7 +412,7 @@ static void other_version(void **state)
 	fdp_wire_seal(&h, key, bytes);
 	assert_int_equal(fdp_master_receive(s.master, bytes, sizeof bytes, s.now_ns, NULL), 0);
 	assert_int_equal(s.refused, 1);
-	assert_non_null(strstr(s.reason, "speaks 9, the master 3"));
+	assert_non_null(strstr(s.reason, "speaks 9, the master 4"));
 	/* Version 2 sent 256 bytes, of which the first are as they still are. */
 	join.version = h.version = 2;
 	h.payload_len = 256;
@@ -421,7 +421,7 @@ static void other_version(void **state)
 	fdp_join_encode(&join, bytes + FDP_HEADER_BYTES, FDP_JOIN_BYTES);
 	fdp_wire_seal(&h, key, bytes);
 	assert_int_equal(fdp_master_receive(s.master, bytes, FDP_HEADER_BYTES + 256, s.now_ns, NULL), 0);
-	assert_non_null(strstr(s.reason, "speaks 2, the master 3"));
+	assert_non_null(strstr(s.reason, "speaks 2, the master 4"));
 	/* Anything else of that version is not looked at. */
 	h.kind = FDP_ACK;
 	fdp_wire_seal(&h, key, bytes);

@@ -74,7 +74,7 @@ static void one_line_a_minute_and_peer(void **state)
 				       "both sides need the same network.key_file (1 such"));
 	assert_non_null(strstr(c.text, "192.0.2.4:4001 (node right): signed with another key"));
 	assert_non_null(strstr(c.text, "192.0.2.4:5000 (not of this room): signed with another key (1"));
-	assert_non_null(strstr(c.text, "(node right): it speaks protocol version 7, this daemon 3 (1"));
+	assert_non_null(strstr(c.text, "(node right): it speaks protocol version 7, this daemon 4 (1"));
 	/* The next minute tells how many there were. */
 	capture_start(&c);
 	drop(GR_ERR_AUTH, 0, "node left", 4000, 3 * MINUTE_NS);

@@ -65,7 +65,7 @@ static void good(void **state)
 	assert_int_equal(out.count, 1);
 	assert_false(out.packed);
 	/* Every byte where docs/protocol.md says it is. */
-	assert_memory_equal(bytes, "GFDP\3\6\0\0\2\0\12\0\0\0\1\0", 16);
+	assert_memory_equal(bytes, "GFDP\4\6\0\0\2\0\12\0\0\0\1\0", 16);
 	assert_memory_equal(bytes + 16, "\115\0\0\0\0\0\0\0\5\0\0\0\0\0\0\0\6\0\0\0\0\0\0\0\12\0\0\0\12\0\0\0", 32);
 }
 
@@ -150,7 +150,8 @@ static void each_field(void **state)
 	SAYS(FDP_BAD_FORMAT, h.group = true; h.to = 3); /* to all and to one */
 	assert_int_equal(sealed(ack_header(), other_key, 10), FDP_BAD_AUTH);
 	SAYS(FDP_BAD_VERSION, h.version = 2);
-	SAYS(FDP_BAD_VERSION, h.version = 4);
+	SAYS(FDP_BAD_VERSION, h.version = 3);
+	SAYS(FDP_BAD_VERSION, h.version = 5);
 	SAYS(FDP_BAD_VERSION, h.version = 0);
 	SAYS(FDP_GOOD, h.version = 1; h.kind = FDP_JOIN); /* the form of JOIN never changes */
 	SAYS(FDP_BAD_SESSION, h.session = 78);
@@ -176,6 +177,18 @@ static void each_field(void **state)
 	SAYS(FDP_BAD_FORMAT, h.index = 1);
 	SAYS(FDP_GOOD, h.kind = FDP_DELTA; h.packed = true; h.plain_len = 100);
 	SAYS(FDP_GOOD, h.kind = FDP_DELTA; h.count = 2; h.message_len = h.plain_len = 20);
+	/* Parity: of deltas that are cut alone, as long as their fragments, half as many at most. */
+	SAYS(FDP_GOOD, h.kind = FDP_DELTA; h.count = 2; h.message_len = h.plain_len = 20; h.parity = 1);
+	SAYS(FDP_GOOD, h.kind = FDP_DELTA; h.count = 2; h.message_len = h.plain_len = 20; h.parity = 1; h.index = 2);
+	SAYS(FDP_GOOD, h.kind = FDP_DELTA; h.count = 2; h.message_len = h.plain_len = 11; h.parity = 1; h.index = 2);
+	SAYS(FDP_BAD_FORMAT, h.kind = FDP_DELTA; h.count = 2; h.message_len = h.plain_len = 10; h.parity = 1; h.index = 2);
+	SAYS(FDP_BAD_FORMAT, h.kind = FDP_DELTA; h.count = 2; h.message_len = h.plain_len = 21; h.parity = 1; h.index = 2);
+	SAYS(FDP_BAD_FORMAT, h.kind = FDP_DELTA; h.count = 2; h.message_len = h.plain_len = 20; h.parity = 1; h.index = 3);
+	SAYS(FDP_BAD_FORMAT, h.kind = FDP_DELTA; h.count = 2; h.message_len = h.plain_len = 20; h.parity = 2);
+	SAYS(FDP_BAD_FORMAT, h.kind = FDP_DELTA; h.count = 2; h.message_len = h.plain_len = 20; h.index = 2);
+	SAYS(FDP_BAD_FORMAT, h.kind = FDP_DELTA; h.parity = 1);
+	SAYS(FDP_BAD_FORMAT, h.kind = FDP_DELTA; h.count = 193; h.message_len = h.plain_len = 1930);
+	SAYS(FDP_BAD_FORMAT, h.parity = 1);
 	SAYS(FDP_BAD_FORMAT, h.kind = FDP_DELTA; h.packed = true; h.plain_len = FDP_MESSAGE_MAX + 1);
 	SAYS(FDP_BAD_FORMAT, h.kind = FDP_DELTA; h.packed = true); /* packed, and no smaller */
 #undef SAYS
