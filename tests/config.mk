@@ -19,6 +19,12 @@ tests_unit_test_layout_items_SOURCES = tests/unit/test_layout_items.c $(LAYOUT_T
 tests_unit_test_layout_items_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_layout_items_LDADD = $(CONFIG_LIBS) $(CMOCKA_LIBS)
 
+check_PROGRAMS += tests/unit/test_layout_trackers
+TESTS += tests/unit/test_layout_trackers
+tests_unit_test_layout_trackers_SOURCES = tests/unit/test_layout_trackers.c $(LAYOUT_TEXT_SOURCES)
+tests_unit_test_layout_trackers_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_layout_trackers_LDADD = $(CONFIG_LIBS) $(CMOCKA_LIBS)
+
 check_PROGRAMS += tests/unit/test_layout_walls
 TESTS += tests/unit/test_layout_walls
 tests_unit_test_layout_walls_SOURCES = tests/unit/test_layout_walls.c $(LAYOUT_TEXT_SOURCES)

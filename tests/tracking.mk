@@ -1,6 +1,6 @@
 # tests of tracking
 TRACKING_TESTS = tests/unit/test_tracking tests/unit/test_sim tests/unit/test_replay \
-	tests/unit/test_device
+	tests/unit/test_bind tests/unit/test_device tests/unit/test_hydra_decode
 check_PROGRAMS += $(TRACKING_TESTS)
 TESTS += $(TRACKING_TESTS)
 
@@ -16,17 +16,49 @@ tests_unit_test_replay_SOURCES = tests/unit/test_replay.c tests/unit/unit.h
 tests_unit_test_replay_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_replay_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
 
+tests_unit_test_bind_SOURCES = tests/unit/test_bind.c tests/unit/unit.h
+tests_unit_test_bind_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_bind_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
+
 tests_unit_test_device_SOURCES = tests/unit/test_device.c tests/unit/fake_device.h tests/unit/unit.h
 tests_unit_test_device_CFLAGS = $(TEST_CFLAGS) -pthread
 tests_unit_test_device_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
 
+tests_unit_test_hydra_decode_SOURCES = tests/unit/test_hydra_decode.c tests/unit/hydra_bytes.h tests/unit/unit.h
+tests_unit_test_hydra_decode_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_hydra_decode_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
+
+# Real libraries over mocked devices: the program starts itself under umockdev-wrapper.
+MOCK_SOURCES = tests/unit/mock_node.c tests/unit/mock_node.h tests/unit/unit.h
+MOCK_HID_SOURCES = tests/unit/mock_hid.c tests/unit/mock_hid.h $(MOCK_SOURCES)
+MOCK_CFLAGS = $(TEST_CFLAGS) $(UMOCKDEV_CFLAGS) $(HIDAPI_CFLAGS) $(LIBUSB_CFLAGS) -pthread
+MOCK_LIBS = $(TRACKING_LIBS) $(CMOCKA_LIBS) $(UMOCKDEV_LIBS) -lutil
+MOCKED_TESTS = tests/unit/test_hydra
+if HAVE_UMOCKDEV
+check_PROGRAMS += $(MOCKED_TESTS)
+TESTS += $(MOCKED_TESTS)
+endif
+
+tests_unit_test_hydra_SOURCES = tests/unit/test_hydra.c tests/unit/mock_hydra.c tests/unit/mock_hydra.h \
+	tests/unit/hydra_bytes.h $(MOCK_HID_SOURCES)
+tests_unit_test_hydra_CFLAGS = $(MOCK_CFLAGS)
+tests_unit_test_hydra_LDADD = $(MOCK_LIBS)
+
 EXTRA_DIST += \
+	tests/fuzz/fuzz_hydra.c \
+	tests/fuzz/corpus/hydra/docked \
+	tests/fuzz/corpus/hydra/flips \
+	tests/fuzz/corpus/hydra/short \
 	tests/fuzz/fuzz_replay.c \
 	tests/fuzz/corpus/replay/bad.log \
 	tests/fuzz/corpus/replay/good.log
 
 if FUZZERS
-noinst_PROGRAMS += tests/fuzz/fuzz_replay
+noinst_PROGRAMS += tests/fuzz/fuzz_replay tests/fuzz/fuzz_hydra
+tests_fuzz_fuzz_hydra_SOURCES = tests/fuzz/fuzz_hydra.c tests/unit/hydra_bytes.h
+tests_fuzz_fuzz_hydra_CFLAGS = $(TEST_CFLAGS)
+tests_fuzz_fuzz_hydra_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_hydra_LDADD = $(TRACKING_LIBS)
 tests_fuzz_fuzz_replay_SOURCES = tests/fuzz/fuzz_replay.c
 tests_fuzz_fuzz_replay_CFLAGS = $(TEST_CFLAGS)
 tests_fuzz_fuzz_replay_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer

@@ -123,11 +123,11 @@ static void open_now(struct track_device *d)
 	d->retry_ns = gr_clock_now(d->clock) + d->back_off_ns;
 }
 
-static void close_now(struct track_device *d, const char *why)
+static void close_now(struct track_device *d, enum track_state state, const char *why)
 {
 	d->ops->close(d);
 	d->is_open = false;
-	tell(d, TRACK_ABSENT, why);
+	tell(d, state, why);
 	d->back_off_ns = BACK_OFF_LEAST_NS;
 	d->retry_ns = gr_clock_now(d->clock) + BACK_OFF_LEAST_NS;
 }
@@ -153,13 +153,15 @@ void track_device_turn(struct track_device *d, int timeout_ms)
 {
 	char why[TRACK_WHY] = "";
 	int64_t left_ns;
+	int r;
 
 	/* Before the first look, so that nothing is plugged in unseen between the two. */
 	if (!d->status_stamp && d->ops->subsystem)
 		d->hotplug = track_hotplug_create(d->ops->subsystem);
 	if (d->is_open) {
-		if (d->ops->read(d, timeout_ms, why, sizeof why) < 0)
-			close_now(d, why);
+		r = d->ops->read(d, timeout_ms, why, sizeof why);
+		if (r < 0)
+			close_now(d, r == GR_ERR_IO ? TRACK_ABSENT : TRACK_FAILED, why);
 		return;
 	}
 	left_ns = d->retry_ns - gr_clock_now(d->clock);

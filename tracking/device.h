@@ -74,8 +74,8 @@ struct track_device_ops {
 	/*
 	 * Waits for the device, at most timeout_ms (100 where the library cannot
 	 * be woken) or until track_device_wake_fd is readable, and publishes what
-	 * there is. GR_OK; GR_NOTHING: it said nothing; negative: it is gone or
-	 * broken, close follows, with a line in `why`.
+	 * there is. GR_OK; GR_NOTHING: it said nothing; GR_ERR_IO: it is gone;
+	 * any other error: it is broken. Both with a line in `why`; close follows.
 	 */
 	int (*read)(struct track_device *device, int timeout_ms, char *why, size_t size);
 	/* Of what open opened: leaves the device as it was found, as far as it still answers. */

@@ -1,0 +1,272 @@
+/* The Hydra's driver with the real hidapi under it: mode, reports, unplugging. */
+#include "tests/unit/unit.h"
+
+#include "base/clock.h"
+#include "base/result.h"
+#include "tests/unit/hydra_bytes.h"
+#include "tests/unit/mock_hydra.h"
+#include "tracking/hotplug.h"
+#include "tracking/hydra.h"
+
+#include <poll.h>
+
+static UMockdevTestbed *bed;
+
+struct fixture {
+	struct mock_hydra hydra;
+	struct track_device *device;
+	struct track_reader reader;
+};
+
+static int setup(void **state)
+{
+	const struct track_hydra_params params = { 0 };
+	struct fixture *f = calloc(1, sizeof *f);
+
+	*state = f;
+	return track_hydra_create(&f->device, &params, &gr_clock_monotonic);
+}
+
+static int teardown(void **state)
+{
+	struct fixture *f = *state;
+
+	track_device_destroy(&f->device);
+	mock_hydra_finish(&f->hydra);
+	free(f);
+	return 0;
+}
+
+static struct track_status status_of(const struct fixture *f)
+{
+	struct track_status status;
+
+	track_device_status(f->device, &status);
+	return status;
+}
+
+/* Turns until it is in a state; each turn waits for the device, not for us. */
+static void until(struct fixture *f, enum track_state wanted)
+{
+	const int64_t end_ns = gr_clock_now(&gr_clock_monotonic) + 60 * GR_NS_PER_S;
+
+	do {
+		track_device_turn(f->device, 20);
+		assert_true(gr_clock_now(&gr_clock_monotonic) < end_ns);
+	} while (status_of(f).state != wanted);
+}
+
+/* The next report of either wand. */
+static struct track_report next(struct fixture *f)
+{
+	const int64_t end_ns = gr_clock_now(&gr_clock_monotonic) + 60 * GR_NS_PER_S;
+	struct track_report r;
+
+	while (track_device_take(f->device, &f->reader, &r, 1) == 0) {
+		track_device_turn(f->device, 20);
+		assert_true(gr_clock_now(&gr_clock_monotonic) < end_ns);
+	}
+	return r;
+}
+
+static void nothing_is_plugged_in(void **state)
+{
+	struct fixture *f = *state;
+
+	until(f, TRACK_ABSENT);
+	assert_string_equal(status_of(f).why, "no Razer Hydra (1532:0300) is plugged in");
+}
+
+static void it_is_switched_and_switched_back(void **state)
+{
+	struct fixture *f = *state;
+	struct track_report r;
+
+	mock_hydra_plug(&f->hydra, bed, 0, 1);
+	until(f, TRACK_RUNNING);
+	assert_int_equal(mock_hydra_mode(&f->hydra), MOCK_HYDRA_MOTION);
+	assert_non_null(strstr(status_of(f).why, "/dev/hidraw0 and /dev/hidraw1, serial number "));
+	assert_non_null(strstr(status_of(f).why, MOCK_HYDRA_SERIAL));
+	for (int i = 0; i < 100; i++)
+		mock_hydra_say(&f->hydra, (uint8_t)i, 100 + i, 200, -300);
+	for (int i = 0; i < 64; i++) /* as many as hidraw keeps */
+		for (unsigned wand = 0; wand < 2; wand++) {
+			r = next(f);
+			assert_int_equal(r.sensor, wand);
+			assert_true(fabsf(r.T_base_sensor.p[0] -
+					  (wand ? 0.001f : -0.001f) * (float)(136 + i)) < 1e-6f);
+		}
+	track_device_destroy(&f->device);
+	assert_int_equal(mock_hydra_mode(&f->hydra), MOCK_HYDRA_GAMEPAD);
+}
+
+static void one_that_was_in_motion_mode_is_left_there(void **state)
+{
+	struct fixture *f = *state;
+
+	mock_hydra_plug(&f->hydra, bed, 0, 1);
+	mock_hydra_set_mode(&f->hydra, MOCK_HYDRA_MOTION);
+	mock_hydra_say(&f->hydra, 1, 100, 0, -100); /* waits in the node until it is opened */
+	until(f, TRACK_RUNNING);
+	assert_int_equal(f->hydra.switches, 0);
+	track_device_destroy(&f->device);
+	assert_int_equal(mock_hydra_mode(&f->hydra), MOCK_HYDRA_MOTION);
+}
+
+static void damaged_reports_are_counted_and_go_nowhere(void **state)
+{
+	struct fixture *f = *state;
+	uint8_t bytes[HYDRA_BYTES];
+	struct track_counters counters;
+
+	mock_hydra_plug(&f->hydra, bed, 0, 1);
+	until(f, TRACK_RUNNING);
+	hydra_make(bytes, 1, 9999, 0, 0);
+	bytes[10] ^= 1;
+	mock_hid_push(f->hydra.reports, bytes, sizeof bytes);
+	hydra_make(bytes, 2, 100, 0, 0);
+	memset(bytes + 6 + 8, 0, 8); /* a quaternion of zeros */
+	hydra_seal(bytes);
+	mock_hid_push(f->hydra.reports, bytes, sizeof bytes);
+	assert_int_equal(next(f).sensor, 1); /* of the last one the wand that is whole */
+	track_device_counters(f->device, &counters);
+	assert_int_equal(counters.faults[TRACK_FAULT_CHECKSUM], 1);
+	assert_int_equal(counters.faults[TRACK_FAULT_POSE], 1);
+	assert_int_equal(counters.reports, 1);
+}
+
+static void another_program_switches_it(void **state)
+{
+	struct fixture *f = *state;
+	const uint8_t gamepad[12] = { 0 };
+
+	mock_hydra_plug(&f->hydra, bed, 0, 1);
+	until(f, TRACK_RUNNING);
+	mock_hydra_say(&f->hydra, 1, 100, 0, -100);
+	next(f);
+	mock_hydra_set_mode(&f->hydra, MOCK_HYDRA_GAMEPAD);
+	mock_hid_push(f->hydra.reports, gamepad, sizeof gamepad);
+	until(f, TRACK_FAILED);
+	assert_non_null(strstr(status_of(f).why, "another program has switched its mode"));
+	until(f, TRACK_RUNNING);
+	assert_int_equal(mock_hydra_mode(&f->hydra), MOCK_HYDRA_MOTION);
+}
+
+/* It is there before the driver looks, and again after each unplugging, on other nodes. */
+static void unplugged_and_plugged_again(void **state)
+{
+	struct fixture *f = *state;
+	const int rounds = getenv("GROTTO_LONG") ? 200 : 10;
+	struct unit_random random = unit_random_start("unplug");
+
+	for (int i = 0; i < rounds; i++) {
+		const int nodes = i % 3;
+
+		mock_hydra_plug(&f->hydra, bed, nodes, nodes + 1);
+		until(f, TRACK_RUNNING);
+		for (uint32_t n = unit_random_u32(&random) % 8; n > 0; n--)
+			mock_hydra_say(&f->hydra, (uint8_t)n, 100, 0, -100);
+		mock_hydra_say(&f->hydra, 99, 123, 0, -100);
+		next(f);
+		mock_hydra_unplug(&f->hydra);
+		until(f, TRACK_ABSENT);
+		mock_hydra_finish(&f->hydra);
+	}
+	struct track_counters counters;
+	track_device_counters(f->device, &counters);
+	assert_int_equal(counters.opened, rounds);
+	printf("# unplugged and plugged again %d times\n", rounds);
+}
+
+static void udev_tells_of_it(void **state)
+{
+	struct fixture *f = *state;
+	struct track_hotplug *hotplug = track_hotplug_create("hidraw");
+	struct pollfd heard = { .fd = track_hotplug_fd(hotplug), .events = POLLIN };
+	bool added = false;
+
+	assert_non_null(hotplug);
+	assert_false(track_hotplug_added(hotplug));
+	mock_hydra_plug(&f->hydra, bed, 0, 1);
+	while (!added) {
+		assert_int_equal(poll(&heard, 1, 60000), 1);
+		added = track_hotplug_added(hotplug);
+	}
+	track_hotplug_destroy(&hotplug);
+}
+
+/* A state that the device's thread comes to by itself. */
+static void await(const struct fixture *f, enum track_state wanted)
+{
+	const int64_t end_ns = gr_clock_now(&gr_clock_monotonic) + 60 * GR_NS_PER_S;
+
+	while (status_of(f).state != wanted) {
+		assert_true(gr_clock_now(&gr_clock_monotonic) < end_ns);
+		poll(NULL, 0, 2);
+	}
+}
+
+static void a_thread_of_its_own(void **state)
+{
+	struct fixture *f = *state;
+	const int64_t end_ns = gr_clock_now(&gr_clock_monotonic) + 60 * GR_NS_PER_S;
+	struct track_report r;
+
+	assert_int_equal(track_device_start(f->device), GR_OK);
+	await(f, TRACK_ABSENT);
+	mock_hydra_plug(&f->hydra, bed, 4, 5);
+	await(f, TRACK_RUNNING);
+	mock_hydra_say(&f->hydra, 1, 100, 0, -100);
+	while (track_device_take(f->device, &f->reader, &r, 1) == 0) {
+		assert_true(gr_clock_now(&gr_clock_monotonic) < end_ns);
+		poll(NULL, 0, 2);
+	}
+	assert_true(fabsf(r.T_base_sensor.p[0] + 0.1f) < 1e-6f);
+	mock_hydra_unplug(&f->hydra);
+	await(f, TRACK_ABSENT);
+}
+
+static void of_two_the_second_is_taken(void **state)
+{
+	struct fixture *f = *state;
+	const struct track_hydra_params params = { .number = 1 };
+	struct mock_hydra second = { 0 };
+
+	track_device_destroy(&f->device);
+	assert_int_equal(track_hydra_create(&f->device, &params, &gr_clock_monotonic), GR_OK);
+	/* Nodes as they come: 0 and 3 are the first one's, 1 and 2 the second's. */
+	mock_hydra_plug(&f->hydra, bed, 0, 3);
+	until(f, TRACK_ABSENT);
+	assert_non_null(strstr(status_of(f).why, "number 1 is not plugged in"));
+	mock_hydra_plug(&second, bed, 1, 2);
+	until(f, TRACK_RUNNING);
+	assert_non_null(strstr(status_of(f).why, "/dev/hidraw1 and /dev/hidraw2"));
+	assert_int_equal(mock_hydra_mode(&second), MOCK_HYDRA_MOTION);
+	assert_int_equal(mock_hydra_mode(&f->hydra), MOCK_HYDRA_GAMEPAD);
+	track_device_destroy(&f->device);
+	mock_hydra_finish(&second);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
+
+int main(int argc, char **argv)
+{
+	const struct CMUnitTest tests[] = {
+		TEST(nothing_is_plugged_in),
+		TEST(it_is_switched_and_switched_back),
+		TEST(one_that_was_in_motion_mode_is_left_there),
+		TEST(damaged_reports_are_counted_and_go_nowhere),
+		TEST(another_program_switches_it),
+		TEST(unplugged_and_plugged_again),
+		TEST(udev_tells_of_it),
+		TEST(a_thread_of_its_own),
+		TEST(of_two_the_second_is_taken),
+	};
+	int failed;
+
+	(void)argc;
+	bed = mock_begin(argv);
+	failed = cmocka_run_group_tests_name("hydra", tests, NULL, NULL);
+	g_object_unref(bed);
+	return failed;
+}

@@ -1,0 +1,210 @@
+/* Devices in a layout: bindings, faults with their lines, written and read again. */
+#include "tests/unit/layout_text.h"
+
+#include "base/clock.h"
+#include "base/result.h"
+
+/* A replayed head's input, a Hydra and a second one that gives the wand's buttons. */
+static const char devices[] =
+	"trackers = (\n"
+	"	{ name = \"one\"; kind = \"hydra\"; latency_ms = 4.5; serial = \"A1\";\n"
+	"	  base = { position = [0.5, 1.0, -0.4]; heading_deg = 90.0; scale = 1.25; };\n"
+	"	  bind = ( { body = \"head\"; sensor = \"left\"; offset = [0.0, -0.1, 0.0]; pitch_deg = 30.0; },\n"
+	"	    { body = \"wand\"; sensor = \"right\"; input = false; } ); },\n"
+	"	{ name = \"two\"; kind = \"hydra\"; number = 1;\n"
+	"	  bind = ( { body = \"wand\"; position = false; orientation = false;\n"
+	"	    buttons = \"bumper - 1\"; axes = \"stick_x -stick_y\"; } ); }\n"
+	");\n";
+
+static char *with_devices(const char *text)
+{
+	const size_t len = (size_t)(strstr(layout_text, "trackers = ") - layout_text);
+	char *whole = malloc(len + strlen(text) + 1);
+
+	memcpy(whole, layout_text, len);
+	strcpy(whole + len, text);
+	return whole;
+}
+
+static struct layout *parse(const char *text, struct gr_diag *diag)
+{
+	struct layout *layout;
+	char *whole = with_devices(text);
+
+	layout_text_parse(whole, &layout, diag);
+	free(whole);
+	return layout;
+}
+
+static void what_it_says_is_there(void **state)
+{
+	struct gr_diag diag = { 0 };
+	struct layout *layout = parse(devices, &diag);
+	const struct layout_tracker *one, *two;
+	const vec3 ahead = { 0, 0, -1 };
+	vec3 turned;
+
+	(void)state;
+	unit_diag_print(&diag);
+	assert_non_null(layout);
+	assert_int_equal(diag.count, 0);
+	assert_int_equal(layout->tracker_count, 2);
+	one = &layout->trackers[0];
+	two = &layout->trackers[1];
+	assert_true(layout_tracker_is_device(one));
+	assert_true(one->head && one->wand && !two->head && two->wand);
+	assert_int_equal(one->latency_ns, 4500000);
+	assert_string_equal(one->serial, "A1");
+	assert_float_equal(one->scale, 1.25, 1e-6);
+	assert_float_equal(one->room_base.pose.p[0], 0.5, 1e-6);
+	gr_pose_direction(&one->room_base.pose, ahead, turned);
+	assert_float_equal(turned[0], -1, 1e-6); /* 90 degrees to the left */
+	assert_int_equal(one->binding_count, 2);
+	assert_string_equal(one->bindings[0].sensor, "left");
+	assert_int_equal(one->bindings[0].body, LAYOUT_HEAD);
+	assert_float_equal(one->bindings[0].sensor_body.pose.p[1], -0.1, 1e-6);
+	gr_pose_direction(&one->bindings[0].sensor_body.pose, ahead, turned);
+	assert_float_equal(turned[1], 0.5, 1e-6); /* 30 degrees up */
+	assert_false(one->bindings[1].input);
+	assert_int_equal(two->number, 1);
+	assert_string_equal(two->bindings[0].buttons, "bumper - 1");
+	assert_string_equal(two->bindings[0].axes, "stick_x -stick_y");
+	assert_null(one->bindings[0].buttons);
+	layout_destroy(&layout);
+	gr_diag_finish(&diag);
+}
+
+static void written_and_read_again(void **state)
+{
+	struct gr_diag diag = { 0 };
+	struct layout *layout = parse(devices, &diag), *again = NULL;
+	char *text = NULL, *second = NULL;
+	size_t len = 0;
+	FILE *file = open_memstream(&text, &len);
+
+	(void)state;
+	assert_int_equal(layout_write(file, layout), GR_OK);
+	fclose(file);
+	assert_int_equal(layout_text_parse(text, &again, &diag), GR_OK);
+	unit_diag_print(&diag);
+	assert_int_equal(diag.count, 0); /* nor a warning */
+	for (size_t i = 0; i < layout->tracker_count; i++) {
+		const struct layout_tracker *a = &layout->trackers[i], *b = &again->trackers[i];
+
+		assert_string_equal(a->name, b->name);
+		assert_memory_equal(&a->room_base, &b->room_base, sizeof a->room_base);
+		assert_int_equal(a->binding_count, b->binding_count);
+		for (size_t k = 0; k < a->binding_count; k++)
+			assert_memory_equal(&a->bindings[k].sensor_body, &b->bindings[k].sensor_body,
+					    sizeof a->bindings[k].sensor_body);
+	}
+	assert_string_equal(again->trackers[1].bindings[0].axes, "stick_x -stick_y");
+	file = open_memstream(&second, &len);
+	assert_int_equal(layout_write(file, again), GR_OK);
+	fclose(file);
+	assert_string_equal(text, second);
+	layout_destroy(&layout);
+	layout_destroy(&again);
+	gr_diag_finish(&diag);
+	free(text);
+	free(second);
+}
+
+struct fault {
+	const char *find, *replace, *mark, *key, *message;
+	unsigned errors;
+};
+
+static const struct fault faults[] = {
+	{ "sensor = \"right\"; input = false;", "sensor = \"right\";", "position = false",
+	  "trackers[1].bind[0].input", "tracker \"one\" gives the wand's input already; say input = false in one",
+	  1 },
+	{ "position = false; orientation", "orientation", "{ body = \"wand\"; orientation",
+	  "trackers[1].bind[0].position",
+	  "tracker \"one\" gives the wand's position already; say position = false in one", 1 },
+	{ "body = \"wand\"; sensor = \"right\"", "body = \"head\"; sensor = \"right\"",
+	  "{ body = \"head\"; sensor = \"right\"", "trackers[0].bind[1].position",
+	  "tracker \"one\" gives the head's position already", 1 },
+	{ "input = false; } ); }", "input = false; position = false; orientation = false; } ); }",
+	  "sensor = \"right\"", "trackers[0].bind[1]",
+	  "gives nothing of the wand; leave it out or set position, orientation or input", 1 },
+	{ "pitch_deg = 30.0;", "pitch_deg = 30.0;\nbuttons = \"1\";", "buttons = \"1\"",
+	  "trackers[0].bind[0].buttons", "a head has none; give them to the wand", 1 },
+	{ "body = \"head\"; ", "", "bind = ( { sensor = \"left\"", "trackers[0].bind[0].body",
+	  "missing; it is what the sensor is on", 1 },
+	{ "\"head\"", "\"heads\"", "\"heads\"", "trackers[0].bind[0].body",
+	  "\"heads\" is not known, did you mean \"head\"?", 1 },
+	{ "scale = 1.25", "scale = 0.0", "base =", "trackers[0].base.scale",
+	  "0 is outside 0.001 to 1000", 1 },
+	{ "scale = 1.25", "scael = 1.25", "base =", "trackers[0].base.scael",
+	  "unknown key, did you mean \"scale\"?", 1 },
+	{ "kind = \"hydra\"; number", "kind = \"hidra\"; number", "hidra", "trackers[1].kind",
+	  "did you mean \"hydra\"?", 1 },
+	{ "number = 1;", "number = 1; head = false;", "name = \"two\"", "trackers[1].head",
+	  "not used: only sim and replay track bodies as a whole", 0 },
+	{ "number = 1;", "number = 1; sim = { seed = 2; };", "name = \"two\"", "trackers[1].sim",
+	  "not used: only kind = \"sim\" is simulated", 0 },
+	{ "name = \"two\"; kind = \"hydra\"; number = 1;\n", "name = \"two\"; kind = \"sim\"; head = false; wand = false;\n",
+	  "name = \"two\"", "trackers[1]", "tracks neither head nor wand", 1 },
+	{ "\"hydra\"; latency_ms", "\"sim\"; head = false; latency_ms", "latency_ms",
+	  "trackers[0].latency_ms", "not used: only a device has it", 1 /* two's input */ },
+	{ "	{ name = \"two\"", "	{ name = \"new\"; kind = \"sim\"; wand = false; },\n	{ name = \"two\"",
+	  "name = \"new\"", "trackers[1].head", "tracker \"one\" tracks the head already", 1 },
+};
+
+static unsigned check_fault(const struct fault *fault)
+{
+	char *text = unit_replace(devices, fault->find, fault->replace), *whole = with_devices(text);
+	struct gr_diag diag = { 0 };
+	struct layout *layout = NULL;
+	char start[256];
+	const enum gr_severity severity =
+		strstr(fault->message, "not used") ? GR_DIAG_WARNING : GR_DIAG_ERROR;
+	unsigned bad = 0;
+
+	layout_text_parse(whole, &layout, &diag);
+	snprintf(start, sizeof start, "t.cave:%d: %s: ", unit_line(whole, fault->mark), fault->key);
+	if (!unit_diag_has(&diag, severity, start, fault->message) || diag.errors != fault->errors) {
+		printf("# wanted %s...%s... and %u errors\n", start, fault->message, fault->errors);
+		unit_diag_print(&diag);
+		bad = 1;
+	}
+	layout_destroy(&layout);
+	gr_diag_finish(&diag);
+	free(whole);
+	free(text);
+	return bad;
+}
+
+static void faults_are_named(void **state)
+{
+	unsigned bad = 0;
+
+	(void)state;
+	for (size_t i = 0; i < sizeof faults / sizeof *faults; i++)
+		bad += check_fault(&faults[i]);
+	assert_int_equal(bad, 0);
+}
+
+static void a_device_needs_bindings(void **state)
+{
+	struct gr_diag diag = { 0 };
+
+	(void)state;
+	assert_null(parse("trackers = ( { name = \"x\"; kind = \"hydra\"; } );\n", &diag));
+	assert_int_equal(diag.errors, 1);
+	assert_true(unit_diag_has(&diag, GR_DIAG_ERROR, "t.cave:", "missing; say what its sensors are on"));
+	gr_diag_finish(&diag);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(what_it_says_is_there),
+		cmocka_unit_test(written_and_read_again),
+		cmocka_unit_test(faults_are_named),
+		cmocka_unit_test(a_device_needs_bindings),
+	};
+
+	return cmocka_run_group_tests_name("layout_trackers", tests, NULL, NULL);
+}
