@@ -14,6 +14,7 @@ daemon_libgdaemon_a_SOURCES = \
 	daemon/master_settings.c daemon/master_settings.h \
 	daemon/master_state.c daemon/master_state.h \
 	daemon/node_frame.c daemon/node_frame.h \
+	daemon/node_plan.c daemon/node_plan.h \
 	daemon/notify.c daemon/notify.h \
 	daemon/options.c daemon/options.h \
 	daemon/recorder.c daemon/recorder.h \
@@ -52,6 +53,7 @@ daemon_grotto_master_LDADD = $(DAEMON_LIBS)
 daemon_grotto_node_SOURCES = \
 	daemon/node.c daemon/node.h \
 	daemon/node_control.c daemon/node_control.h \
+	daemon/node_light.c daemon/node_light.h \
 	daemon/node_main.c \
 	daemon/node_report.c \
 	daemon/node_share.c daemon/node_share.h \

@@ -193,14 +193,28 @@ static void signal_came(void *ctx, uint32_t events)
 	loop->stopped = true;
 }
 
+static const int ends[] = { SIGTERM, SIGINT, SIGHUP };
+#define ENDS (sizeof ends / sizeof *ends)
+
+bool loop_signal_waits(void)
+{
+	sigset_t waiting;
+
+	if (sigpending(&waiting) < 0)
+		return false;
+	for (size_t i = 0; i < ENDS; i++)
+		if (sigismember(&waiting, ends[i]) == 1)
+			return true;
+	return false;
+}
+
 int loop_catch_signals(struct loop *loop)
 {
 	sigset_t set;
 
 	sigemptyset(&set);
-	sigaddset(&set, SIGTERM);
-	sigaddset(&set, SIGINT);
-	sigaddset(&set, SIGHUP);
+	for (size_t i = 0; i < ENDS; i++)
+		sigaddset(&set, ends[i]);
 	if (sigprocmask(SIG_BLOCK, &set, NULL) < 0)
 		return GR_ERR_IO;
 	loop->signal_fd = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);

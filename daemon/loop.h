@@ -42,6 +42,8 @@ int loop_timer_set(struct loop *loop, int timer, int64_t at_ns);
  * thread and those that it will make: call it before any library starts one.
  */
 int loop_catch_signals(struct loop *loop);
+/* One of these has come, and waits for loop_once: for work that is long. Any loop's. */
+bool loop_signal_waits(void);
 /* The signal that stopped the loop, 0 for none. */
 int loop_signal(const struct loop *loop);
 

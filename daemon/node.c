@@ -95,6 +95,7 @@ static void swap(struct node *n, uint64_t frame)
 	n->swapped = n->report = frame;
 	n->ready = n->due = 0;
 	n->counts.swapped++;
+	node_plan_settled(&n->plan);
 	log_swap(n);
 	note_cpu(&n->counts);
 }
@@ -138,7 +139,10 @@ static void on_event(void *ctx, const struct fdp_node_event *event)
 		break;
 	case FDP_NODE_FRAME: apply_frame(n, event->frame, now_ns); break;
 	case FDP_NODE_SWAP: told_to_swap(n, event->frame, event->at_ns); break;
-	case FDP_NODE_REFUSED: refused(n, event->reason, now_ns); break;
+	case FDP_NODE_REFUSED:
+		if (!node_plan_offered(&n->plan, event->plan, now_ns))
+			refused(n, event->reason, now_ns);
+		break;
 	case FDP_NODE_LOST:
 		n->counts.lost++;
 		n->master_gone = n->orphan = true;
@@ -366,7 +370,7 @@ static void work(struct node *n)
 
 int node_run(struct node *node)
 {
-	while (!loop_stopped(node->loop)) {
+	while (!loop_stopped(node->loop) && node->plan.wanted == 0) {
 		/* Everything that has arrived is taken first: only the newest frame is drawn. */
 		bool busy = node->drawing != 0 || node->wanted != 0;
 		int r = loop_once(node->loop, busy ? 0 : -1);
@@ -375,7 +379,7 @@ int node_run(struct node *node)
 			gr_error("the event loop failed");
 			return GR_EXIT_RUNTIME;
 		}
-		if (!loop_stopped(node->loop))
+		if (!loop_stopped(node->loop) && node->plan.wanted == 0)
 			work(node);
 	}
 	if (loop_signal(node->loop))
@@ -391,14 +395,13 @@ static int create_protocol(struct node *n)
 		.name = layout->nodes[n->params.index].name,
 		.datagram_max = net_datagram_max(&layout->network),
 		.silence_ns = SILENCE_NS,
-		.plan = n->params.plan,
-		.plan_cost = n->params.plan_cost,
-		.plan_error = n->params.plan_error,
 		.share_bytes = n->share.room,
 	};
 	struct fdp_node_ops ops = { send_datagram, on_event, n };
 	int r;
 
+	node_share_plan(n->renderer, &params.plan, &params.plan_cost, &params.plan_error);
+	n->plan.present = params.plan;
 	memcpy(params.key, n->params.key, sizeof params.key);
 	params.contents = n->params.contents;
 	r = fdp_node_create(&n->fdp, &params, &ops);
@@ -460,6 +463,30 @@ int node_create(struct node **out, struct loop *loop, struct net *net, struct ta
 	on_tick(n, now_ns);
 	*out = n;
 	return GR_OK;
+}
+
+int node_take_renderer(struct node *n, struct renderer *renderer)
+{
+	uint16_t cost, error;
+	uint64_t plan;
+	int r;
+
+	n->renderer = renderer;
+	n->wanted = n->drawing = n->drawn = n->ready = n->due = 0;
+	n->picture = false;
+	node_share_finish(&n->share);
+	node_share_plan(renderer, &plan, &cost, &error);
+	node_plan_tried(&n->plan, plan);
+	if (!renderer)
+		return GR_OK;
+	r = node_share_init(&n->share, renderer, n->params.scene_file, n->params.layout->node_count);
+	if (r >= 0)
+		r = fdp_node_replan(n->fdp, plan, cost, error, n->share.room);
+	if (r < 0)
+		gr_error("the room's plan of the light cannot be taken: %s", gr_result_name(r));
+	else
+		loop_timer_set(n->loop, n->tick_timer, fdp_node_next(n->fdp));
+	return r;
 }
 
 static void on_due(void *ctx)

@@ -10,7 +10,8 @@
  * A swap may have a time: it is waited for, which is the frame's own wait.
  *
  * Without a master the last picture stays and the node asks to join, for ever.
- * No allocation after node_create but for saved pictures.
+ * No allocation after node_create but for saved pictures, and when the node
+ * takes the room's plan of the light.
  */
 #ifndef GROTTO_DAEMON_NODE_H
 #define GROTTO_DAEMON_NODE_H
@@ -20,6 +21,7 @@
 #include "daemon/faults.h"
 #include "daemon/histogram.h"
 #include "daemon/loop.h"
+#include "daemon/node_plan.h"
 #include "daemon/node_share.h"
 #include "daemon/node_swap.h"
 #include "daemon/notify.h"
@@ -28,14 +30,11 @@
 #include "protocol/node.h"
 #include "renderer/renderer.h"
 
-
 struct node_params {
 	const struct layout *layout;
 	size_t index; /* of this node */
 	const struct scene_file *scene_file;
 	struct fdp_contents contents;
-	uint64_t plan; /* of gi.method = "auto" (renderer/gi/plan.h); 0: the scene file says it */
-	uint16_t plan_cost, plan_error; /* what is expected of it, as struct fdp_join has it */
 	uint8_t key[FDP_KEY_BYTES];
 	bool window;    /* the target is a window, which must be answered */
 	bool once;      /* end when the master ends or refuses */
@@ -58,10 +57,11 @@ struct node {
 	struct net *net;
 	struct faults *faults; /* NULL: the layout allows none */
 	struct target *target;
-	struct renderer *renderer;
+	struct renderer *renderer; /* NULL: gone, and the node is to end */
 	struct pictures *pictures; /* NULL: none are saved */
 	struct fdp_node *fdp;
 	struct node_share share;
+	struct node_plan plan;
 	struct node_swap swap;
 	struct notify notify;
 	struct render_frame next_frame, frame; /* what is wanted; what is or was drawn */
@@ -96,8 +96,17 @@ int node_create(struct node **out, struct loop *loop, struct net *net, struct ta
 		const struct node_params *params);
 /* Before node_run. Borrowed. */
 void node_use_faults(struct node *node, struct faults *faults);
-/* Serves until the loop is stopped; enum gr_exit. */
+/*
+ * Serves until the loop is stopped, or until the room has another plan of the
+ * light than this node (node->plan.wanted is not 0, and the renderer is to be
+ * made anew for it). enum gr_exit.
+ */
 int node_run(struct node *node);
+/*
+ * The renderer is another, which may have another plan: node->plan.wanted has
+ * been tried. NULL: there is none. GR_OK; GR_ERR_NOMEM, GR_ERR_RANGE.
+ */
+int node_take_renderer(struct node *node, struct renderer *renderer);
 /* LEAVE, and the last picture. */
 void node_leave(struct node *node);
 void node_destroy(struct node **node);

@@ -9,13 +9,12 @@
 #include "daemon/json.h"
 #include "daemon/node.h"
 #include "daemon/node_control.h"
+#include "daemon/node_light.h"
 #include "daemon/options.h"
 #include "daemon/priority.h"
 #include "daemon/privileges.h"
 #include "daemon/room_files.h"
-#include "renderer/gi/plan.h"
 
-#include <math.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -24,7 +23,6 @@
 #include <unistd.h>
 
 #define REPORT_MAX 65536
-#define WARM_UP_NS (60 * GR_NS_PER_S)
 
 struct opened {
 	struct room_files files;
@@ -32,7 +30,7 @@ struct opened {
 	struct loop *loop;
 	struct net *net;
 	struct target *target;
-	struct renderer *renderer;
+	struct node_light light;
 	struct pictures *pictures;
 	struct node *node;
 	struct faults *faults;
@@ -128,24 +126,6 @@ static int open_target(struct opened *o, const struct node_options *options,
 	return r;
 }
 
-/*
- * Drivers finish compiling at the first draw, which can take longer than a
- * barrier waits: so the first draw happens before the node joins. The light
- * is left out: the master has all nodes compute it anew when one joins.
- */
-static int warm_up(struct opened *o)
-{
-	struct render_frame frame;
-	int r;
-
-	render_frame_init(&frame, o->files.scene_file);
-	frame.T_room_head = o->files.layout->start_head;
-	frame.gi_on = false;
-	frame.eye_separation_m = o->files.layout->eye_separation_m;
-	r = renderer_draw(o->renderer, &frame);
-	return r < 0 ? r : renderer_finished(o->renderer, WARM_UP_NS);
-}
-
 static int open_pictures(struct opened *o, const struct node_options *options,
 			 const struct renderer_params *renderer)
 {
@@ -190,19 +170,6 @@ static void take_priority(const struct opened *o, int priority)
 	priority_take(priority);
 }
 
-/* A JOIN's hundredths; what is more than they hold is said to be that. */
-static uint16_t hundredths(double value)
-{
-	return (uint16_t)fmin(fmax(round(100 * value), 0), UINT16_MAX);
-}
-
-static void fill_plan(struct node_params *params, const struct gi_plan *plan)
-{
-	params->plan = plan->code;
-	params->plan_cost = hundredths(plan->update_ms);
-	params->plan_error = hundredths(100 * plan->error);
-}
-
 /* A room that is being tested: who may be disturbed must be heard. */
 static int open_faults(struct opened *o)
 {
@@ -219,6 +186,19 @@ static int open_faults(struct opened *o)
 	if (!node_control_path(layout, layout->nodes[o->index].name, path))
 		return GR_OK;
 	return control_create(&o->control, o->loop, path, node_answer, o->node);
+}
+
+static int open_light(struct opened *o, const struct renderer_params *params, bool window)
+{
+	o->light = (struct node_light){
+		.target = o->target,
+		.layout = o->files.layout,
+		.file = o->files.scene_file,
+		.scene = o->files.scene,
+		.params = *params,
+		.window = window,
+	};
+	return node_light_open(&o->light);
 }
 
 static int open_all(struct opened *o, const struct node_options *options)
@@ -240,10 +220,9 @@ static int open_all(struct opened *o, const struct node_options *options)
 	fill_renderer(&renderer, o, options);
 	r = open_target(o, options, &renderer);
 	if (r >= 0)
-		r = renderer_create(&o->renderer, o->target, &renderer, o->files.scene_file,
-				    o->files.scene);
-	if (r >= 0)
-		r = warm_up(o);
+		r = open_light(o, &renderer, params.window);
+	if (r == GR_NOTHING)
+		return r;
 	if (r >= 0)
 		r = open_pictures(o, options, &renderer);
 	if (r >= 0)
@@ -260,10 +239,42 @@ static int open_all(struct opened *o, const struct node_options *options)
 	params.contents = room_files_contents(&o->files);
 	params.swap_log = o->swap_log;
 	memcpy(params.key, o->files.key, sizeof params.key);
-	if (renderer_plan(o->renderer))
-		fill_plan(&params, renderer_plan(o->renderer));
-	r = node_create(&o->node, o->loop, o->net, o->target, o->renderer, o->pictures, &params);
+	r = node_create(&o->node, o->loop, o->net, o->target, o->light.renderer, o->pictures, &params);
 	return r < 0 ? r : open_faults(o);
+}
+
+/* The room has another plan of the light: ours, then, too. GR_OK: go on. */
+static int adopt(struct opened *o)
+{
+	int r = node_light_adopt(&o->light, o->node->plan.wanted), taken = GR_OK;
+
+	if (r == GR_ERR_MISMATCH)
+		node_plan_tried(&o->node->plan, o->node->plan.present);
+	else
+		taken = node_take_renderer(o->node, o->light.renderer);
+	if (r == GR_NOTHING || taken < 0)
+		return r == GR_NOTHING ? r : taken;
+	/* who came for one show has nothing to wait for */
+	if (r < 0 && o->node->params.once)
+		return GR_ERR_CONFIG;
+	return r == GR_ERR_MISMATCH || r == GR_ERR_UNSUPPORTED ? GR_OK : r;
+}
+
+static int serve(struct opened *o)
+{
+	int status = node_run(o->node);
+
+	while (o->node->plan.wanted != 0) {
+		int r = adopt(o);
+
+		if (r == GR_NOTHING)
+			return GR_EXIT_OK;
+		if (r < 0)
+			return r == GR_ERR_CONFIG ? GR_EXIT_CONFIG : GR_EXIT_RUNTIME;
+		notify_status("waiting for the master");
+		status = node_run(o->node);
+	}
+	return status;
 }
 
 static int finish(struct opened *o, const char *report, int status)
@@ -294,7 +305,7 @@ static void close_all(struct opened *o)
 	pictures_destroy(&o->pictures);
 	if (o->swap_log >= 0)
 		close(o->swap_log);
-	renderer_destroy(&o->renderer);
+	node_light_close(&o->light);
 	target_destroy(&o->target);
 	net_close(&o->net);
 	room_files_finish(&o->files);
@@ -331,12 +342,12 @@ int main(int argc, char **argv)
 		goto out;
 	}
 	r = open_all(&o, &options);
-	if (r < 0) {
-		status = r == GR_ERR_CONFIG ? GR_EXIT_CONFIG : GR_EXIT_RUNTIME;
+	if (r != GR_OK) {
+		status = r == GR_NOTHING ? GR_EXIT_OK : r == GR_ERR_CONFIG ? GR_EXIT_CONFIG : GR_EXIT_RUNTIME;
 		goto out;
 	}
 	notify_ready("waiting for the master");
-	status = finish(&o, options.common.report, node_run(o.node));
+	status = finish(&o, options.common.report, serve(&o));
 out:
 	close_all(&o);
 	return status;

@@ -149,7 +149,8 @@ int node_write_json(const struct node *n, uint64_t pictures_saved, char *text, s
 	json_u64(&json, "pictures", pictures_saved);
 	json_u64(&json, "state_frame", n->state_frame);
 	json_hash(&json, "state_hash", n->state_hash);
-	write_renderer(&json, n);
+	if (n->renderer)
+		write_renderer(&json, n);
 	write_share(&json, n);
 	write_wire(&json, n);
 	json_close(&json, '}');

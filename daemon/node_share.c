@@ -1,10 +1,28 @@
 #include "daemon/node_share.h"
 
 #include "base/result.h"
+#include "renderer/gi/plan.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* A JOIN's hundredths; what is more than they hold is said to be that. */
+static uint16_t hundredths(double value)
+{
+	return (uint16_t)fmin(fmax(round(100 * value), 0), UINT16_MAX);
+}
+
+void node_share_plan(const struct renderer *renderer, uint64_t *out_plan, uint16_t *out_cost,
+		     uint16_t *out_error)
+{
+	const struct gi_plan *plan = renderer ? renderer_plan(renderer) : NULL;
+
+	*out_plan = plan ? plan->code : 0;
+	*out_cost = plan ? hundredths(plan->update_ms) : 0;
+	*out_error = plan ? hundredths(100 * plan->error) : 0;
+}
 
 int node_share_init(struct node_share *share, struct renderer *renderer,
 		    const struct scene_file *scene, size_t nodes)

@@ -22,6 +22,12 @@ struct node_share {
 	struct gr_log_limit refused_limit, unsent_limit;
 };
 
+/*
+ * The plan of the light that a renderer goes by (NULL, or one that has none: 0),
+ * and what is expected of it, as struct fdp_join has them.
+ */
+void node_share_plan(const struct renderer *renderer, uint64_t *out_plan, uint16_t *out_cost,
+		     uint16_t *out_error);
 /* nodes: of the layout. Logs what is shared, or why nothing is. GR_OK or GR_ERR_NOMEM. */
 int node_share_init(struct node_share *share, struct renderer *renderer,
 		    const struct scene_file *scene, size_t nodes);

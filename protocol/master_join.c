@@ -19,10 +19,10 @@ static void make_challenge(const struct fdp_master *m, unsigned node,
 }
 
 static void refuse(struct fdp_master *m, unsigned node, const struct fdp_join *join,
-		   const char *reason, int64_t now_ns)
+		   const char *reason, uint64_t plan, int64_t now_ns)
 {
 	struct fdp_peer *peer = &m->peers[node];
-	struct fdp_refuse answer;
+	struct fdp_refuse answer = { .plan = plan };
 	const struct fdp_master_event event = {
 		.kind = FDP_MASTER_REFUSED, .node = (int)node, .frame = m->frame, .reason = reason
 	};
@@ -117,9 +117,10 @@ bool fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
 	struct fdp_peer *peer = &m->peers[node];
 	uint8_t expected[FDP_NONCE_BYTES];
 	char reason[FDP_REASON_MAX];
+	uint64_t plan;
 
-	if (fdp_master_refuses(m, header->version, join, reason)) {
-		refuse(m, node, join, reason, now_ns);
+	if (fdp_master_refuses(m, header->version, join, reason, &plan)) {
+		refuse(m, node, join, reason, plan, now_ns);
 		return false;
 	}
 	/* Not refused: it may come back soon. */

@@ -169,9 +169,9 @@ void fdp_master_judge(struct fdp_master *m, int64_t now_ns);
 void fdp_master_write_state(struct fdp_master *m, struct fdp_letter *letter, enum fdp_kind kind,
 			    uint64_t base);
 
-/* True, with the reason, when a node may not take part. */
+/* True, with the reason and the plan that would be right, when a node may not take part. */
 bool fdp_master_refuses(const struct fdp_master *m, unsigned version, const struct fdp_join *join,
-			char reason[FDP_REASON_MAX]);
+			char reason[FDP_REASON_MAX], uint64_t *out_plan);
 /* True when the JOIN is no recording. */
 bool fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
 			const struct fdp_join *join, int64_t now_ns);

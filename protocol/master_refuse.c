@@ -58,7 +58,7 @@ static bool contents_differ(const struct fdp_master *m, const struct fdp_join *j
  * nothing and has no plan of its own: who is in the room decides.
  */
 static bool plans_differ(const struct fdp_master *m, const struct fdp_join *join,
-			 char reason[FDP_REASON_MAX])
+			 char reason[FDP_REASON_MAX], uint64_t *out_plan)
 {
 	for (size_t i = 0; i < m->params.node_count; i++) {
 		const struct fdp_peer *peer = &m->peers[i];
@@ -66,18 +66,20 @@ static bool plans_differ(const struct fdp_master *m, const struct fdp_join *join
 		if (i == join->index || !fdp_peer_present(peer->state) || peer->status.plan == join->plan)
 			continue;
 		snprintf(reason, FDP_REASON_MAX,
-			 "another plan of the light: the node's %016llx, '%s' has %016llx; name gi.method and its settings in the scene file",
+			 "another plan of the light: the node's %016llx, '%s' has %016llx; it takes that one, or the scene file must name gi.method and its settings",
 			 (unsigned long long)join->plan, m->names[i], (unsigned long long)peer->status.plan);
+		*out_plan = peer->status.plan;
 		return true;
 	}
 	return false;
 }
 
 bool fdp_master_refuses(const struct fdp_master *m, unsigned version, const struct fdp_join *join,
-			char reason[FDP_REASON_MAX])
+			char reason[FDP_REASON_MAX], uint64_t *out_plan)
 {
 	const uint64_t table = param_table_hash();
 
+	*out_plan = 0;
 	if (version != FDP_VERSION || join->version != FDP_VERSION) {
 		snprintf(reason, FDP_REASON_MAX,
 			 "another protocol version: the node speaks %u, the master %u",
@@ -96,5 +98,5 @@ bool fdp_master_refuses(const struct fdp_master *m, unsigned version, const stru
 			 (unsigned long long)join->table_hash, (unsigned long long)table);
 		return true;
 	}
-	return contents_differ(m, join, reason) || plans_differ(m, join, reason);
+	return contents_differ(m, join, reason) || plans_differ(m, join, reason, out_plan);
 }

@@ -137,6 +137,9 @@ size_t fdp_refuse_encode(const struct fdp_refuse *m, uint8_t *bytes, size_t size
 	gr_write_bytes(&w, m->nonce, sizeof m->nonce);
 	gr_write_u16(&w, (uint16_t)len);
 	gr_write_bytes(&w, m->reason, len);
+	/* only to a node of this version: for others the form ends here */
+	if (m->plan)
+		gr_write_u64(&w, m->plan);
 	return written(&w);
 }
 
@@ -151,6 +154,12 @@ int fdp_refuse_decode(const uint8_t *bytes, size_t len, struct fdp_refuse *out)
 	if (n >= sizeof out->reason)
 		return GR_ERR_FORMAT;
 	read_into(&r, out->reason, n);
+	out->plan = 0;
+	if (gr_reader_left(&r) > 0) {
+		out->plan = gr_read_u64(&r);
+		if (!out->plan)
+			return GR_ERR_FORMAT;
+	}
 	return printable(out->reason, n) ? finished(&r) : GR_ERR_FORMAT;
 }
 

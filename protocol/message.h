@@ -54,6 +54,7 @@ struct fdp_welcome {
 struct fdp_refuse {
 	uint8_t nonce[FDP_NONCE_BYTES];
 	char reason[FDP_REASON_MAX]; /* printable ASCII, NUL-terminated here */
+	uint64_t plan; /* of the room, where the node's is why: with it it may come; 0: not said */
 };
 
 /* ACK, READY, SWAPPED. */

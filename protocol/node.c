@@ -187,14 +187,30 @@ static void enter_session(struct fdp_node *n, uint64_t session, const struct fdp
 	fdp_node_frame_reset(n);
 }
 
-void fdp_node_ask_again(struct fdp_node *n, enum fdp_node_event_kind kind, const char *reason)
+static void stop_taking_part(struct fdp_node *n)
 {
 	n->status = FDP_NODE_ASKING;
 	forget_session(n);
 	n->asked = false; /* at once */
 	randombytes_buf(n->nonce, sizeof n->nonce);
+}
+
+void fdp_node_ask_again(struct fdp_node *n, enum fdp_node_event_kind kind, const char *reason)
+{
+	stop_taking_part(n);
 	say_reason(n, kind, reason);
 	fdp_node_frame_reset(n);
+}
+
+static void say_refused(struct fdp_node *n, const struct fdp_refuse *r, int64_t now_ns)
+{
+	const struct fdp_node_event event = {
+		.kind = FDP_NODE_REFUSED, .frame = n->applied, .reason = n->refused, .plan = r->plan
+	};
+
+	memcpy(n->refused, r->reason, sizeof n->refused);
+	n->refused_ns = now_ns;
+	n->ops.event(n->ops.ctx, &event);
 }
 
 static enum fdp_verdict on_welcome(struct fdp_node *n, const struct fdp_header *h,
@@ -234,18 +250,16 @@ static enum fdp_verdict on_refuse(struct fdp_node *n, const struct fdp_header *h
 	/* Welcome when it asked, but not when it came: somebody with another plan was faster. */
 	if (n->status == FDP_NODE_WAITING_SNAPSHOT &&
 	    !sodium_memcmp(r.nonce, n->joined_nonce, sizeof r.nonce)) {
-		memcpy(n->refused, r.reason, sizeof n->refused);
-		n->refused_ns = now_ns;
-		fdp_node_ask_again(n, FDP_NODE_REFUSED, n->refused);
+		stop_taking_part(n);
+		say_refused(n, &r, now_ns);
+		fdp_node_frame_reset(n);
 		return FDP_GOOD;
 	}
 	if (sodium_memcmp(r.nonce, n->nonce, sizeof r.nonce))
 		return FDP_BAD_REPLAY;
 	if (!strcmp(r.reason, n->refused) && now_ns - n->refused_ns < REFUSED_AGAIN_NS)
 		return FDP_GOOD;
-	memcpy(n->refused, r.reason, sizeof n->refused);
-	n->refused_ns = now_ns;
-	say_reason(n, FDP_NODE_REFUSED, n->refused);
+	say_refused(n, &r, now_ns);
 	return FDP_GOOD;
 }
 
@@ -367,6 +381,26 @@ int64_t fdp_node_next(const struct fdp_node *n)
 const struct param_state *fdp_node_params_state(const struct fdp_node *n)
 {
 	return n->state;
+}
+
+int fdp_node_replan(struct fdp_node *n, uint64_t plan, uint16_t plan_cost, uint16_t plan_error,
+		    size_t share_bytes)
+{
+	const struct fdp_share_counts counts = n->share.counts;
+	int result;
+
+	if (n->gate.session)
+		return GR_ERR_STATE;
+	n->params.plan = plan;
+	n->params.plan_cost = plan_cost;
+	n->params.plan_error = plan_error;
+	fdp_share_finish(&n->share);
+	result = fdp_share_init(&n->share, share_bytes);
+	n->share.counts = counts;
+	/* whatever is said to this plan is news */
+	n->refused[0] = 0;
+	n->asked = false;
+	return result;
 }
 
 void fdp_node_leave(struct fdp_node *n, int64_t now_ns)

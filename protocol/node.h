@@ -37,6 +37,7 @@ struct fdp_node_event {
 	int64_t at_ns; /* FDP_NODE_SWAP: when to show it, our clock; 0: now */
 	uint64_t ours, theirs;
 	const char *reason;
+	uint64_t plan; /* FDP_NODE_REFUSED: the room's, for which this node's was refused; from outside; 0: not */
 };
 
 struct fdp_node_params {
@@ -98,6 +99,14 @@ void fdp_node_slices(struct fdp_node *node, uint64_t frame, fdp_node_slice_fn *f
 int fdp_node_slice(struct fdp_node *node, uint64_t frame, const uint8_t *bytes, size_t len,
 		   int64_t now_ns);
 void fdp_node_share(const struct fdp_node *node, struct fdp_share_counts *out);
+
+/*
+ * This node's plan, and what follows from it, is another from now on. GR_OK,
+ * GR_ERR_STATE while it takes part in a session; GR_ERR_RANGE, GR_ERR_NOMEM:
+ * nothing is shared any more.
+ */
+int fdp_node_replan(struct fdp_node *node, uint64_t plan, uint16_t plan_cost, uint16_t plan_error,
+		    size_t share_bytes);
 
 void fdp_node_leave(struct fdp_node *node, int64_t now_ns);
 enum fdp_node_state fdp_node_status(const struct fdp_node *node);

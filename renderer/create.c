@@ -38,13 +38,21 @@ static void plan_light(struct renderer *r)
 		gi_facts_take(&r->light.facts, r->scene, file);
 		return;
 	}
-	light_plan_make(&r->light, r->target, r->scene, file);
+	if (r->params.light)
+		r->light = *r->params.light;
+	else
+		light_plan_make(&r->light, r->target, r->scene, file);
 	r->planned = *file;
 	r->planned.gi = r->light.plan.gi;
 	r->file = &r->planned;
 	r->is_planned = true;
-	gr_log(r->light.plan.within ? GR_LOG_NOTICE : GR_LOG_WARNING, "light, chosen for %s ms by %s: %s",
-	       gr_plain((double)file->gi.budget_ms, 3).text, r->light.costs_from, r->light.plan.why);
+	if (r->light.plan.adopted)
+		gr_log(r->light.plan.within ? GR_LOG_NOTICE : GR_LOG_WARNING, "light, as the room has it: %s",
+		       r->light.plan.why);
+	else
+		gr_log(r->light.plan.within ? GR_LOG_NOTICE : GR_LOG_WARNING,
+		       "light, chosen for %s ms by %s: %s", gr_plain((double)file->gi.budget_ms, 3).text,
+		       r->light.costs_from, r->light.plan.why);
 }
 
 /* A plan by what was baked, and what would be right where it exceeds the budget. */
@@ -82,7 +90,7 @@ static int create_surfels(struct renderer *r, bool probes)
 	int result;
 
 	surfel_bake_params_of(r->file, &bake);
-	result = surfels_load_or_bake(&set, r->scene, r->file, &bake);
+	result = surfels_load_or_bake(&set, r->scene, r->file, &bake, r->params.alive);
 	if (result == GR_OK) {
 		r->surfels = set->count;
 		result = gi_surfels_create(&r->gi, set, &params);
@@ -208,6 +216,11 @@ static void log_stages(const struct renderer *r, const struct emissive_patches *
 		r->file->tone.srgb ? "sRGB" : "power law");
 }
 
+static int go_on(const struct renderer *r)
+{
+	return alive_go_on(r->params.alive) ? GR_OK : GR_NOTHING;
+}
+
 int renderer_create(struct renderer **out, struct target *target,
 		    const struct renderer_params *params, const struct scene_file *file,
 		    const struct scene *scene)
@@ -229,15 +242,22 @@ int renderer_create(struct renderer **out, struct target *target,
 	r->eye_count = eyes_count(params->eyes);
 	r->fresh = true;
 	plan_light(r);
-	result = gl_mesh_create(&r->mesh, scene);
+	result = go_on(r);
+	if (result == GR_OK)
+		result = gl_mesh_create(&r->mesh, scene);
 	if (result == GR_OK)
 		result = emissive_patches(scene, &patches);
 	if (result == GR_OK)
+		result = go_on(r);
+	if (result == GR_OK)
 		result = create_light(r, &patches);
+	if (result == GR_OK)
+		result = go_on(r);
 	if (result == GR_OK)
 		result = create_pictures(r);
 	if (result != GR_OK) {
-		gr_error("renderer: %s", gr_result_name(result));
+		if (result < 0)
+			gr_error("renderer: %s", gr_result_name(result));
 		renderer_destroy(&r);
 		return result;
 	}

@@ -1,7 +1,7 @@
 # Fragments of the renderer: gl + scene + image, trace + gi, view + tone. Each adds
 # its sources to RENDERER_SOURCES and its GLSL files to SHADERS.
 RENDERER_SOURCES = \
-	renderer/calibrate.c renderer/calibrate.h renderer/calibrate_room.c renderer/calibrate_room.h \
+	renderer/alive.h renderer/calibrate.c renderer/calibrate.h renderer/calibrate_room.c renderer/calibrate_room.h \
 	renderer/create.c renderer/frame.c renderer/frame.h renderer/irradiance.c renderer/plan_light.c renderer/plan_light.h renderer/read.c \
 	renderer/renderer.c renderer/renderer.h renderer/renderer_private.h \
 	renderer/share.c

@@ -17,3 +17,14 @@ void light_plan_make(struct light_plan *out, struct target *target, const struct
 	}
 	gi_plan_make(&out->plan, &out->facts, &file->gi, &out->costs);
 }
+
+bool light_plan_adopt(struct light_plan *out, const struct light_plan *own,
+		      const struct scene_file *file, uint64_t code, const char **out_why)
+{
+	struct light_plan light = *own;
+
+	if (!gi_plan_adopt(&light.plan, &own->facts, &file->gi, &own->costs, code, out_why))
+		return false;
+	*out = light;
+	return true;
+}

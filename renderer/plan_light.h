@@ -23,5 +23,11 @@ struct light_plan {
  */
 void light_plan_make(struct light_plan *out, struct target *target, const struct scene *scene,
 		     const struct scene_file *file);
+/*
+ * The room's plan, by its code, for what `own` knows of scene and GPU. Pure. False,
+ * *out unchanged and *out_why a constant where it is refused, as gi_plan_adopt.
+ */
+bool light_plan_adopt(struct light_plan *out, const struct light_plan *own,
+		      const struct scene_file *file, uint64_t code, const char **out_why);
 
 #endif

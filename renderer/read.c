@@ -76,6 +76,11 @@ const struct gi_plan *renderer_plan(const struct renderer *renderer)
 	return renderer->is_planned ? &renderer->light.plan : NULL;
 }
 
+const struct light_plan *renderer_light_plan(const struct renderer *renderer)
+{
+	return renderer->is_planned ? &renderer->light : NULL;
+}
+
 size_t renderer_surfels(const struct renderer *renderer)
 {
 	return renderer->surfels;

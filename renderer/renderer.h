@@ -9,6 +9,7 @@
 #ifndef GROTTO_RENDERER_RENDERER_H
 #define GROTTO_RENDERER_RENDERER_H
 
+#include "renderer/alive.h"
 #include "renderer/frame.h"
 #include "renderer/gl/target.h"
 #include "renderer/gl/timer.h"
@@ -35,13 +36,17 @@ struct renderer_params {
 	struct projection_wall wall; /* room frame; without it: a camera per still */
 	bool keep_radiance;          /* scene-linear pictures can be read back */
 	bool quiet;                  /* the stages are not logged */
+	/* For gi.method = "auto": this plan, copied; NULL: the one that plan_light.h makes here. */
+	const struct light_plan *light;
+	struct alive alive; /* asked between the steps of renderer_create, and while surfels are baked */
 };
 
 /* Target size that params need: both eyes for side-by-side and top-bottom. */
 void renderer_target_size(const struct renderer_params *params, int *width, int *height);
 
 struct renderer;
-/* target, file and scene must outlive the renderer. Logs the stages. */
+struct light_plan;
+/* target, file and scene must outlive the renderer. Logs the stages. GR_NOTHING: `alive` ended it. */
 int renderer_create(struct renderer **out, struct target *target,
 		    const struct renderer_params *params, const struct scene_file *file,
 		    const struct scene *scene);
@@ -91,6 +96,8 @@ int renderer_read_irradiance(struct renderer *renderer, const struct renderer_po
 struct gi_plan;
 /* What was chosen for gi.method = "auto" (renderer/gi/plan.h); NULL: the scene file chose. */
 const struct gi_plan *renderer_plan(const struct renderer *renderer);
+/* The same with what it follows from (renderer/plan_light.h). */
+const struct light_plan *renderer_light_plan(const struct renderer *renderer);
 /* Surfels that light the scene; 0: another method. */
 size_t renderer_surfels(const struct renderer *renderer);
 struct gi_stats;

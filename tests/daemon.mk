@@ -18,6 +18,19 @@ tests_unit_test_daemon_parts_SOURCES = tests/unit/test_daemon_parts.c tests/unit
 tests_unit_test_daemon_parts_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_daemon_parts_LDADD = $(DAEMON_PART_LIBS)
 
+check_PROGRAMS += tests/unit/test_node_plan
+TESTS += tests/unit/test_node_plan
+tests_unit_test_node_plan_SOURCES = tests/unit/test_node_plan.c tests/unit/unit.h
+tests_unit_test_node_plan_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_node_plan_LDADD = $(DAEMON_PART_LIBS)
+
+check_PROGRAMS += tests/unit/test_node_light
+TESTS += tests/unit/test_node_light
+tests_unit_test_node_light_SOURCES = tests/unit/test_node_light.c tests/unit/unit.h tests/unit/gl.h \
+	daemon/node_light.c daemon/node_light.h
+tests_unit_test_node_light_CFLAGS = $(TEST_CFLAGS) $(CGLM_CFLAGS) $(SODIUM_CFLAGS)
+tests_unit_test_node_light_LDADD = daemon/libgdaemon.a $(RENDERER_LIBS) $(SYSTEMD_LIBS) $(CMOCKA_LIBS) -lpthread
+
 check_PROGRAMS += tests/unit/test_dropped
 TESTS += tests/unit/test_dropped
 tests_unit_test_dropped_SOURCES = tests/unit/test_dropped.c tests/unit/unit.h
@@ -60,6 +73,13 @@ tests_loopback_ask_SOURCES = tests/loopback/ask.c
 tests_loopback_stranger_SOURCES = tests/loopback/stranger.c tests/unit/unit.h
 tests_loopback_stranger_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
 tests_loopback_stranger_LDADD = $(PROTOCOL_LIBS)
+
+check_PROGRAMS += tests/loopback/costs
+tests_loopback_costs_SOURCES = tests/loopback/costs.c
+tests_loopback_costs_CFLAGS = $(AM_CFLAGS) $(SODIUM_CFLAGS)
+tests_loopback_costs_LDADD = $(RENDERER_LIBS)
+dist_check_SCRIPTS += tests/loopback/plan.sh
+TESTS += tests/loopback/plan.sh
 
 check_PROGRAMS += tests/loopback/forger
 tests_loopback_forger_SOURCES = tests/loopback/forger.c tests/unit/unit.h

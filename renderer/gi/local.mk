@@ -10,7 +10,7 @@ RENDERER_SOURCES += \
 	renderer/gi/choose.c renderer/gi/choose.h \
 	renderer/gi/costs_file.c renderer/gi/costs_file.h \
 	renderer/gi/plan.c renderer/gi/plan.h renderer/gi/plan_private.h \
-	renderer/gi/plan_code.c renderer/gi/plan_cost.c renderer/gi/plan_error.c renderer/gi/plan_facts.c renderer/gi/plan_say.c \
+	renderer/gi/plan_adopt.c renderer/gi/plan_code.c renderer/gi/plan_cost.c renderer/gi/plan_error.c renderer/gi/plan_facts.c renderer/gi/plan_say.c \
 	renderer/gi/sectors.c renderer/gi/sectors.h \
 	renderer/gi/surface.c renderer/gi/surface.h \
 	renderer/gi/surfel_bake.c renderer/gi/surfel_bake.h renderer/gi/surfel_bake_private.h \

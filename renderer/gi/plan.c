@@ -4,11 +4,7 @@
 
 #include <math.h>
 
-/* Rays that baking may take: about half a minute on two cores. */
-#define RAYS_MOST 2.4e7
-#define SURFELS_MOST 100000.0
 #define SPACING_MOST 1000.0
-#define PROBES_RAYS_MOST 2.4e7
 #define PLAN_TAPS 64 /* with fewer the edge of a moving shadow flickers (docs/results.md) */
 
 static const double surfel_counts[] = { 250, 500, 1000, 2000, 4000, 8000, 16000, 32000, 64000 };
@@ -96,7 +92,7 @@ static void consider_probes(struct search *s, struct scene_gi gi)
 	gi.method = SCENE_GI_PROBES;
 	for (size_t i = 0; i < COUNT(probe_counts); i++) {
 		gi.probes = probe_counts[i];
-		if (gi_plan_grid_cells(s->facts, gi.probes) * gi.links <= PROBES_RAYS_MOST)
+		if (gi_plan_grid_cells(s->facts, gi.probes) * gi.links <= PLAN_RAYS_MOST)
 			consider(s, &gi);
 	}
 }
@@ -108,8 +104,8 @@ static void consider_surfels(struct search *s, struct scene_gi gi, bool probes)
 		gi.spacing_m = spacing_for(s->facts, surfel_counts[n]);
 		for (size_t l = 0; l < COUNT(link_counts); l++) {
 			gi.links = link_counts[l];
-			if (gi_plan_surfels(s->facts, &gi) > SURFELS_MOST ||
-			    gi_plan_surfels(s->facts, &gi) * gi.links > RAYS_MOST)
+			if (gi_plan_surfels(s->facts, &gi) > PLAN_SURFELS_MOST ||
+			    gi_plan_surfels(s->facts, &gi) * gi.links > PLAN_RAYS_MOST)
 				continue;
 			for (size_t k = 0; k < COUNT(gather_counts); k++) {
 				gi.gathers = gather_counts[k];
@@ -123,8 +119,8 @@ static void consider_surfels(struct search *s, struct scene_gi gi, bool probes)
 	}
 }
 
-/* The lattice knows neither an environment nor what moves: with these it is for air alone. */
-static bool lattices_serve(const struct gi_facts *facts, const struct scene_gi *wanted)
+/* With an environment, or with what moves, it is for air alone. */
+bool gi_plan_lattices_serve(const struct gi_facts *facts, const struct scene_gi *wanted)
 {
 	if (facts->scattering_per_m > 0)
 		return true;
@@ -173,6 +169,21 @@ static void complete(struct gi_plan *plan, const struct gi_facts *facts)
 	gi_plan_say(plan, facts);
 }
 
+void gi_plan_expect(struct gi_plan *plan, const struct gi_facts *facts, const struct gi_costs *costs)
+{
+	if (plan->gi.method == SCENE_GI_NONE) {
+		plan->within = true;
+		plan->error = gi_plan_has_light(facts);
+	} else {
+		plan->update_ms = gi_plan_cost_ms(facts, &plan->gi, costs);
+		plan->within = plan->update_ms <= (double)plan->gi.budget_ms;
+		plan->error = gi_plan_error(facts, &plan->gi);
+	}
+	if (plan->gi.method == SCENE_GI_SURFELS || plan->gi.method == SCENE_GI_PROBES)
+		plan->surfels = gi_plan_surfels(facts, &plan->gi);
+	complete(plan, facts);
+}
+
 double gi_plan_budget_for(double ms)
 {
 	double power = pow(10, floor(log10(ms)) - 1);
@@ -193,21 +204,14 @@ void gi_plan_make(struct gi_plan *out, const struct gi_facts *facts, const struc
 
 	if (gi_plan_needs_costs(facts)) {
 		consider_surfels(&surfels, *wanted, facts->moving_geometry);
-		if (lattices_serve(facts, wanted))
+		if (gi_plan_lattices_serve(facts, wanted))
 			consider_lattices(&lattices, *wanted);
 	}
 	s = better_of(&surfels, &lattices);
-	*out = (struct gi_plan){ .gi = s->any ? s->best : *wanted, .update_ms = s->cost, .within = s->within };
-	if (s->any) {
-		out->error = gi_plan_error(facts, &s->best);
-	} else {
+	*out = (struct gi_plan){ .gi = s->any ? s->best : *wanted };
+	if (!s->any)
 		out->gi.method = SCENE_GI_NONE;
-		out->within = true;
-		out->error = gi_plan_has_light(facts);
-	}
-	if (out->gi.method == SCENE_GI_SURFELS || out->gi.method == SCENE_GI_PROBES)
-		out->surfels = gi_plan_surfels(facts, &out->gi);
-	complete(out, facts);
+	gi_plan_expect(out, facts, s->costs);
 }
 
 bool gi_plan_baked(struct gi_plan *plan, const struct gi_facts *facts, const struct gi_costs *costs,

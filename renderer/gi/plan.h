@@ -69,6 +69,7 @@ struct gi_plan {
 	double error_least, error_most; /* between which scenes like the bench's lie */
 	double surfels;     /* expected, or as baked; 0: none */
 	bool baked;         /* surfels is what was baked */
+	bool adopted;       /* another node's choice: it may cost more than the budget here */
 	bool within;        /* the budget; false: this is the least that there is */
 	uint64_t code;      /* of what shapes the light: equal exactly when walls would agree; never 0 */
 	char why[720];      /* for the log */
@@ -89,6 +90,14 @@ void gi_plan_make(struct gi_plan *out, const struct gi_facts *facts, const struc
  */
 bool gi_plan_baked(struct gi_plan *plan, const struct gi_facts *facts, const struct gi_costs *costs,
 		   size_t surfels, struct gi_plan *out_right);
+/*
+ * The plan of another node with the same scene, by its code: what it costs
+ * on this GPU. From outside: false, *out unchanged and *out_why a constant when
+ * it is none, or none that a node would have chosen for these facts (wanted: as
+ * for gi_plan_make).
+ */
+bool gi_plan_adopt(struct gi_plan *out, const struct gi_facts *facts, const struct scene_gi *wanted,
+		   const struct gi_costs *costs, uint64_t code, const char **out_why);
 /* A scene file's least. */
 #define GI_PLAN_BUDGET_LEAST 0.1
 /* The budget to write for what costs so much (above 0): two digits, rounded up. Milliseconds. */

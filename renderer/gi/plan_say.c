@@ -74,7 +74,10 @@ void gi_plan_say(struct gi_plan *plan, const struct gi_facts *facts)
 	}
 	if (plan->surfels > 0)
 		snprintf(count, sizeof count, "%s surfels, ", gr_plain(round(plan->surfels), 4).text);
-	if (!plan->within && !plan->baked)
+	if (!plan->within && plan->adopted)
+		snprintf(over, sizeof over, "; more than the budget of %s ms, for it is the room's plan",
+			 gr_plain((double)plan->gi.budget_ms, 3).text);
+	else if (!plan->within && !plan->baked)
 		snprintf(over, sizeof over, "; nothing fits the budget of %s ms: gi.budget_ms = %s is the least that does",
 			 gr_plain((double)plan->gi.budget_ms, 3).text,
 			 gr_plain(gi_plan_budget_for(plan->update_ms), 3).text);

@@ -85,7 +85,7 @@ static int try_lock(struct surfel_lock *lock)
 	return why == EWOULDBLOCK || why == EINTR ? GR_NOTHING : GR_ERR_IO;
 }
 
-int surfel_lock_take(struct surfel_lock *lock, const char *path, int wait_s)
+int surfel_lock_take(struct surfel_lock *lock, const char *path, int wait_s, struct alive alive)
 {
 	const struct timespec pause = { 0, POLL_NS };
 	int64_t start = gr_clock_now(&gr_clock_monotonic);
@@ -114,6 +114,8 @@ int surfel_lock_take(struct surfel_lock *lock, const char *path, int wait_s)
 				  path, wait_s);
 		}
 		told = true;
+		if (!alive_go_on(alive))
+			return GR_NOTHING;
 		nanosleep(&pause, NULL);
 	}
 }

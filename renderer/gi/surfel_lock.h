@@ -7,6 +7,8 @@
 #ifndef GROTTO_RENDERER_GI_SURFEL_LOCK_H
 #define GROTTO_RENDERER_GI_SURFEL_LOCK_H
 
+#include "renderer/alive.h"
+
 #define SURFEL_HOLDER_SIZE 96
 
 struct surfel_lock {
@@ -20,9 +22,9 @@ struct surfel_lock {
 /*
  * Waits wait_s at most; says in the log whom for. GR_OK: held; GR_ERR_TIMEOUT:
  * `holder` still has it; GR_ERR_IO: no file can be made there, errno says why;
- * GR_ERR_NOMEM. lock is SURFEL_LOCK, or was given back.
+ * GR_ERR_NOMEM; GR_NOTHING: `alive` ended the wait. lock is SURFEL_LOCK, or was given back.
  */
-int surfel_lock_take(struct surfel_lock *lock, const char *path, int wait_s);
+int surfel_lock_take(struct surfel_lock *lock, const char *path, int wait_s, struct alive alive);
 /* Also one that is not held. */
 void surfel_lock_give_back(struct surfel_lock *lock);
 

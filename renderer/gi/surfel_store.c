@@ -128,6 +128,7 @@ struct request {
 	struct surfel_store_done *done;
 	const char *places[PLACES]; /* in the order in which they are tried; NULL: none */
 	struct surfel_lock lock;
+	bool stopped;               /* by the store's alive */
 	uint8_t key[SURFEL_KEY_BYTES];
 };
 
@@ -162,12 +163,15 @@ static int claim(struct request *r, int place, int wait_s)
 
 	if (place == PLACE_CACHE)
 		make_folder(path);
-	result = surfel_lock_take(&r->lock, path, wait_s);
+	result = surfel_lock_take(&r->lock, path, wait_s, r->store->alive);
 	why = errno;
 	r->done->waited_s += r->lock.waited_s;
 	if (result == GR_OK)
 		return GR_OK;
-	if (result == GR_ERR_TIMEOUT)
+	r->stopped = result == GR_NOTHING;
+	if (r->stopped)
+		result = GR_ERR_TIMEOUT;
+	else if (result == GR_ERR_TIMEOUT)
 		gr_diag_add(r->diag, GR_DIAG_WARNING, path, 0, NULL,
 			    "%s has been baking it for more than %d s (it holds %s.lock); not waited "
 			    "for any longer",
@@ -184,7 +188,7 @@ static int claim(struct request *r, int place, int wait_s)
  */
 static int claim_from(struct request *r, int from, int wait_s)
 {
-	for (int place = from; place < PLACES; place++) {
+	for (int place = from; place < PLACES && !r->stopped; place++) {
 		int result = r->places[place] ? claim(r, place, wait_s) : GR_ERR_IO;
 
 		if (result == GR_OK)
@@ -260,6 +264,8 @@ int surfel_store_get(const struct surfel_store *store, struct surfel_set **out,
 	if (result == GR_OK || result == GR_ERR_NOMEM)
 		return result;
 	place = claim_from(&r, PLACE_BESIDE, store->wait_s);
+	if (r.stopped)
+		return GR_NOTHING;
 	/* who held the lock has baked meanwhile; what was wrong before has been said */
 	if (!store->force)
 		result = read_either(&r, &said);
@@ -280,6 +286,7 @@ int surfel_store_get(const struct surfel_store *store, struct surfel_set **out,
 
 struct teller {
 	int64_t next_ns;
+	struct alive alive;
 };
 
 /* A line every ten seconds. */
@@ -288,6 +295,8 @@ static bool tell(void *ctx, const char *stage, double done, double seconds_left)
 	struct teller *teller = ctx;
 	int64_t now = gr_clock_now(&gr_clock_monotonic);
 
+	if (!alive_go_on(teller->alive))
+		return false;
 	if (now < teller->next_ns)
 		return true;
 	teller->next_ns = now + 10 * GR_NS_PER_S;
@@ -299,9 +308,10 @@ static bool tell(void *ctx, const char *stage, double done, double seconds_left)
 }
 
 int surfels_load_or_bake(struct surfel_set **out, const struct scene *scene,
-			 const struct scene_file *file, const struct surfel_bake_params *params)
+			 const struct scene_file *file, const struct surfel_bake_params *params,
+			 struct alive alive)
 {
-	struct teller teller = { gr_clock_now(&gr_clock_monotonic) + 2 * GR_NS_PER_S };
+	struct teller teller = { gr_clock_now(&gr_clock_monotonic) + 2 * GR_NS_PER_S, alive };
 	struct surfel_bake_params told = *params;
 	struct surfel_store_done done;
 	struct surfel_store store;
@@ -309,6 +319,7 @@ int surfels_load_or_bake(struct surfel_set **out, const struct scene *scene,
 	int result = surfel_store_init(&store, file);
 
 	*out = NULL;
+	store.alive = alive;
 	if (!told.progress) {
 		told.progress = tell;
 		told.ctx = &teller;

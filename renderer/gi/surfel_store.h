@@ -13,6 +13,7 @@
 #ifndef GROTTO_RENDERER_GI_SURFEL_STORE_H
 #define GROTTO_RENDERER_GI_SURFEL_STORE_H
 
+#include "renderer/alive.h"
 #include "renderer/gi/surfel_file.h"
 
 /* Longest wait for another process; below the services' TimeoutStartSec. */
@@ -25,6 +26,7 @@ struct surfel_store {
 			  * when it cannot be written there */
 	bool force;      /* bake, whatever there is */
 	int wait_s;      /* most */
+	struct alive alive; /* asked while another process is waited for */
 };
 /*
  * The places for a scene file. The cache is CACHE_DIRECTORY (systemd's), or
@@ -47,7 +49,7 @@ struct surfel_store_done {
  * The set from a file that fits, or baked and kept. That a file is stale or
  * damaged, that none can be written, and that another process is waited for, is
  * said in diag, or in the log while it waits; none of it is an error but as
- * one_place says. As surfel_bake otherwise. done may be NULL.
+ * one_place says. GR_NOTHING: store->alive ended it. As surfel_bake otherwise. done may be NULL.
  */
 int surfel_store_get(const struct surfel_store *store, struct surfel_set **out,
 		     const struct scene *scene, const struct scene_file *file,
@@ -59,8 +61,12 @@ int surfel_store_read(const struct surfel_store *store, struct surfel_set **out,
 		      const struct scene *scene, const struct surfel_bake_params *params,
 		      struct gr_diag *diag, struct surfel_store_done *done);
 
-/* All of the above with the usual places, what there is to say logged. */
+/*
+ * All of the above with the usual places, what there is to say logged. alive is
+ * asked while it bakes or waits, unless params have a progress of their own.
+ */
 int surfels_load_or_bake(struct surfel_set **out, const struct scene *scene,
-			 const struct scene_file *file, const struct surfel_bake_params *params);
+			 const struct scene_file *file, const struct surfel_bake_params *params,
+			 struct alive alive);
 
 #endif

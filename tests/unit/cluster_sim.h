@@ -56,6 +56,7 @@ struct sim_node {
 	int64_t wake_ns; /* true time at which it has something to do, kept while the simulation runs */
 	uint64_t frames, swaps, last_frame, last_swap, joined, lost, refused, mismatches, left;
 	char reason[FDP_REASON_MAX];
+	uint64_t offered; /* the room's plan, of the last refusal */
 };
 
 struct sim {

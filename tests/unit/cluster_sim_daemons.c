@@ -142,6 +142,7 @@ void sim_node_event(void *ctx, const struct fdp_node_event *e)
 		break;
 	case FDP_NODE_REFUSED:
 		n->refused++;
+		n->offered = e->plan;
 		snprintf(n->reason, sizeof n->reason, "%s", e->reason);
 		break;
 	case FDP_NODE_LOST: n->lost++; break;

@@ -384,11 +384,35 @@ static void other_plan(void **state)
 	assert_int_equal(peer.plan, s.nodes[in].node->params.plan);
 	assert_int_equal(peer.plan_cost, 2180);
 	assert_int_equal(peer.plan_error, 510);
-	/* alike they both come in */
-	s.nodes[!in].node->params.plan = s.nodes[in].node->params.plan;
+	assert_int_equal(s.nodes[!in].offered, s.nodes[in].node->params.plan);
+	/* Alike they both come in; but who takes part does not change what it said. */
+	assert_int_equal(fdp_node_replan(s.nodes[in].node, 1, 1, 1, 0), GR_ERR_STATE);
+	assert_int_equal(fdp_node_replan(s.nodes[!in].node, s.nodes[!in].offered, 4400, 490, 4096), GR_OK);
 	sim_run_ns(&s, 1500 * SIM_MS);
+	fdp_master_peer(s.master, !in, &peer);
+	assert_int_equal(peer.plan, s.nodes[in].node->params.plan);
+	assert_int_equal(peer.plan_cost, 4400);
+	assert_int_equal(s.nodes[!in].node->share.room, 4096);
 	assert_int_not_equal(s.nodes[!in].node->status, FDP_NODE_ASKING);
 	assert_int_not_equal(s.nodes[in].node->status, FDP_NODE_ASKING);
+	sim_finish(&s);
+}
+
+/* A refusal for anything else offers no plan, whatever the node's is. */
+static void other_things_have_no_plan(void **state)
+{
+	struct sim s;
+
+	(void)state;
+	sim_init(&s, 2, 2);
+	sim_start_all(&s);
+	s.nodes[0].node->params.plan = 0x1234;
+	s.nodes[1].node->params.plan = 0x1235;
+	spoil_scene(&s);
+	sim_run_ns(&s, 1500 * SIM_MS);
+	assert_int_equal(s.nodes[1].refused, 1);
+	assert_non_null(strstr(s.nodes[1].reason, "another scene"));
+	assert_int_equal(s.nodes[1].offered, 0);
 	sim_finish(&s);
 }
 
@@ -439,6 +463,7 @@ int main(void)
 		cmocka_unit_test(bit_flips),
 		cmocka_unit_test(refusals),
 		cmocka_unit_test(other_plan),
+		cmocka_unit_test(other_things_have_no_plan),
 		cmocka_unit_test(other_version),
 	};
 
