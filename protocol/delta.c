@@ -50,10 +50,10 @@ struct entry {
 	const uint8_t *bytes;
 };
 
+/* What it says of itself; not whether the values may be. */
 static bool read_entry(struct gr_reader *r, const struct param_state *state, uint64_t base,
 		       int last_id, struct entry *out)
 {
-	uint64_t values[(PARAM_VALUE_BYTES + 7) / 8];
 	const uint64_t step = gr_read_varint(r), since = gr_read_varint(r), version = base + since;
 	const uint64_t id = (uint64_t)(last_id + 1) + step;
 
@@ -65,10 +65,15 @@ static bool read_entry(struct gr_reader *r, const struct param_state *state, uin
 	out->id = (enum param_id)id;
 	out->version = version;
 	out->bytes = gr_read_bytes(r, param_info(out->id)->size);
-	if (!out->bytes)
-		return false;
-	param_decode_values(out->id, out->bytes, values);
-	return param_valid(out->id, values);
+	return out->bytes;
+}
+
+static bool entry_valid(const struct entry *e)
+{
+	uint64_t values[(PARAM_VALUE_BYTES + 7) / 8];
+
+	param_decode_values(e->id, e->bytes, values);
+	return param_valid(e->id, values);
 }
 
 int param_delta_apply(struct param_state *state, const uint8_t *bytes, size_t len)
@@ -83,7 +88,7 @@ int param_delta_apply(struct param_state *state, const uint8_t *bytes, size_t le
 		return GR_ERR_FORMAT;
 	first = r;
 	for (uint64_t i = 0; i < count; i++) {
-		if (!read_entry(&r, state, base, last_id, &e))
+		if (!read_entry(&r, state, base, last_id, &e) || !entry_valid(&e))
 			return GR_ERR_FORMAT;
 		last_id = (int)e.id;
 	}

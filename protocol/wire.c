@@ -8,6 +8,7 @@
 #include <sodium.h>
 
 #define VERSION_AT 4
+#define KIND_AT 5
 
 static const uint8_t magic[4] = { 'G', 'F', 'D', 'P' };
 
@@ -63,9 +64,13 @@ unsigned fdp_wire_version(const uint8_t *bytes, size_t len)
 	return len > VERSION_AT && !memcmp(bytes, magic, sizeof magic) ? bytes[VERSION_AT] : 0;
 }
 
+_Static_assert(crypto_shorthash_siphashx24_BYTES == FDP_MAC_BYTES &&
+		       2 * crypto_shorthash_siphashx24_KEYBYTES == FDP_KEY_BYTES,
+	       "a key is one for the payload and one for the header");
+
 /* Over header (less the MAC) and payload, which do not touch: two updates. */
-static void compute_mac(const uint8_t key[FDP_KEY_BYTES], const uint8_t *bytes, size_t len,
-			uint8_t mac[FDP_MAC_BYTES])
+static void handshake_mac(const uint8_t key[FDP_KEY_BYTES], const uint8_t *bytes, size_t len,
+			  uint8_t mac[FDP_MAC_BYTES])
 {
 	crypto_generichash_state hash;
 
@@ -73,6 +78,28 @@ static void compute_mac(const uint8_t key[FDP_KEY_BYTES], const uint8_t *bytes, 
 	crypto_generichash_update(&hash, bytes, FDP_MAC_AT);
 	crypto_generichash_update(&hash, bytes + FDP_HEADER_BYTES, len - FDP_HEADER_BYTES);
 	crypto_generichash_final(&hash, mac, FDP_MAC_BYTES);
+}
+
+/* The payload's hash under one half of the key stands behind the header under the other. */
+static void session_mac(const uint8_t key[FDP_KEY_BYTES], const uint8_t *bytes, size_t len,
+			uint8_t mac[FDP_MAC_BYTES])
+{
+	uint8_t text[FDP_MAC_AT + FDP_MAC_BYTES];
+
+	memcpy(text, bytes, FDP_MAC_AT);
+	crypto_shorthash_siphashx24(text + FDP_MAC_AT, bytes + FDP_HEADER_BYTES, len - FDP_HEADER_BYTES, key);
+	crypto_shorthash_siphashx24(mac, text, sizeof text, key + crypto_shorthash_siphashx24_KEYBYTES);
+}
+
+static void compute_mac(const uint8_t key[FDP_KEY_BYTES], const uint8_t *bytes, size_t len,
+			uint8_t mac[FDP_MAC_BYTES])
+{
+	const unsigned kind = bytes[KIND_AT];
+
+	if (kind < FDP_KINDS && 1u << kind & FDP_HANDSHAKE)
+		handshake_mac(key, bytes, len, mac);
+	else
+		session_mac(key, bytes, len, mac);
 }
 
 bool fdp_wire_authentic(const uint8_t key[FDP_KEY_BYTES], const uint8_t *bytes, size_t len)

@@ -3,9 +3,11 @@
  * that all arriving bytes pass. docs/protocol.md gives every byte.
  *
  * A datagram is a header of FDP_HEADER_BYTES and a payload: a fragment of a
- * message, or a whole one. The MAC (BLAKE2b, keyed, 16 bytes: libsodium's
- * crypto_generichash, RFC 7693) covers all bytes but itself. The cluster's key
- * signs the kinds of FDP_HANDSHAKE, keys of the session (session_keys.h) all others.
+ * message, or a whole one. The MAC has 16 bytes and covers all but itself. The
+ * cluster's key signs the kinds of FDP_HANDSHAKE (BLAKE2b, keyed, RFC 7693), keys
+ * of the session (session_keys.h) all others: SipHash-2-4 of 128 bits (Aumasson and
+ * Bernstein 2012; libsodium's siphashx24), a keyed function that needs no nonce and
+ * takes a third to a fifth of BLAKE2b's time on what is signed hundreds of times a frame.
  *
  * The header, the first FDP_JOIN_FIXED bytes of a JOIN and all of a REFUSE keep
  * their form in every version of the protocol, so that a peer of another
@@ -117,7 +119,7 @@ enum fdp_verdict fdp_gate_open(const struct fdp_gate *gate, const uint8_t *bytes
 /* Writes header and MAC before a payload that stands at bytes + FDP_HEADER_BYTES. */
 void fdp_wire_seal(const struct fdp_header *header, const uint8_t key[FDP_KEY_BYTES],
 		   uint8_t *bytes);
-/* Puts the MAC of what stands there into a datagram of at least FDP_HEADER_BYTES. */
+/* Puts the MAC of what stands there, by its kind, into a datagram of at least FDP_HEADER_BYTES. */
 void fdp_wire_sign(const uint8_t key[FDP_KEY_BYTES], uint8_t *bytes, size_t len);
 /* Constant-time comparison of the MAC in a datagram of at least FDP_HEADER_BYTES. */
 bool fdp_wire_authentic(const uint8_t key[FDP_KEY_BYTES], const uint8_t *bytes, size_t len);

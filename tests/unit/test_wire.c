@@ -6,6 +6,8 @@
 
 #include "base/result.h"
 
+#include <sodium.h>
+
 static const uint8_t key[FDP_KEY_BYTES] = { 9, 8, 7 }; /* the cluster's */
 static const uint8_t keys[4][FDP_KEY_BYTES] = { { 1 }, { 2 }, { 3 }, { 4 } };
 
@@ -44,6 +46,34 @@ static enum fdp_verdict open_copy(const struct fdp_gate *gate, const uint8_t *by
 
 	free(exact);
 	return v;
+}
+
+/* What docs/protocol.md says, by the primitives alone. */
+static void macs(void **state)
+{
+	const uint8_t *with = keys[2];
+	uint8_t bytes[FDP_HEADER_BYTES + 10] = { 'G', 'F', 'D', 'P', FDP_VERSION }, text[FDP_HEADER_BYTES];
+	uint8_t mac[FDP_MAC_BYTES];
+	crypto_generichash_state hash;
+
+	(void)state;
+	for (unsigned kind = FDP_JOIN; kind < FDP_KINDS; kind++) {
+		bytes[5] = (uint8_t)kind;
+		bytes[FDP_HEADER_BYTES + 3] = 7;
+		if (1u << kind & FDP_HANDSHAKE) {
+			crypto_generichash_init(&hash, with, FDP_KEY_BYTES, sizeof mac);
+			crypto_generichash_update(&hash, bytes, FDP_MAC_AT);
+			crypto_generichash_update(&hash, bytes + FDP_HEADER_BYTES, 10);
+			crypto_generichash_final(&hash, mac, sizeof mac);
+		} else {
+			memcpy(text, bytes, FDP_MAC_AT);
+			crypto_shorthash_siphashx24(text + FDP_MAC_AT, bytes + FDP_HEADER_BYTES, 10, with);
+			crypto_shorthash_siphashx24(mac, text, sizeof text, with + 16);
+		}
+		fdp_wire_sign(with, bytes, sizeof bytes);
+		assert_memory_equal(bytes + FDP_MAC_AT, mac, sizeof mac);
+		assert_true(fdp_wire_authentic(with, bytes, sizeof bytes));
+	}
 }
 
 static void good(void **state)
@@ -464,6 +494,7 @@ static void replay_window(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(macs),
 		cmocka_unit_test(good), cmocka_unit_test(short_ones), cmocka_unit_test(every_bit),
 		cmocka_unit_test(each_field), cmocka_unit_test(reserved_bits),
 		cmocka_unit_test(counting), cmocka_unit_test(bodies), cmocka_unit_test(canonical),

@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-#define BARE_HEAD 12
+#define BARE_HEAD 16
 
 static const uint8_t magic[DELIVERY_FDP][4] = {
 	[DELIVERY_BARE] = { 'B', 'A', 'R', 'E' }, [DELIVERY_SIGNED] = { 'S', 'I', 'G', 'N' },
@@ -32,6 +32,7 @@ void delivery_send_bare(const struct delivery_room *room, struct net *net, enum 
 		struct gr_writer w = gr_writer(bytes, sizeof bytes);
 
 		gr_write_bytes(&w, magic[way], sizeof magic[way]);
+		gr_write_u32(&w, FDP_DELTA << 8); /* where a kind stands: it says how to sign */
 		gr_write_u32(&w, update);
 		gr_write_u32(&w, (uint32_t)count);
 		if (way == DELIVERY_SIGNED)
@@ -55,6 +56,7 @@ bool delivery_take_bare(struct delivery_room *room, unsigned node,
 		return false;
 	if (way == DELIVERY_SIGNED && !fdp_wire_authentic(key, bytes, len))
 		return true;
+	gr_read_u32(&r);
 	update = gr_read_u32(&r);
 	count = gr_read_u32(&r);
 	b = &bare[way];
