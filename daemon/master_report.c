@@ -191,6 +191,16 @@ static void write_frames(struct json *json, const struct master *m)
 	write_histogram(json, "swap_sent_to_last_swap_us", &m->stats.swap_to_last);
 }
 
+/* Of a body that is lost, this is how long its pose has been held. */
+static void write_seen(struct json *json, const struct live_source *live, enum track_body body,
+		       const char *key)
+{
+	int64_t seen_ns;
+
+	if (track_history_seen(&live->trackers->history, body, &seen_ns))
+		json_f64(json, key, (double)(live->input.time_ns - seen_ns) * 1e-9);
+}
+
 static void write_tracking(struct json *json, const struct master *m, int64_t now_ns)
 {
 	const struct live_source *live = m->params.live;
@@ -199,12 +209,14 @@ static void write_tracking(struct json *json, const struct master *m, int64_t no
 	json_open(json, "tracking", '{');
 	json_bool(json, "head_tracked", live->input.head.tracked);
 	json_bool(json, "wand_tracked", live->input.wand.tracked);
+	write_seen(json, live, TRACK_HEAD, "head_seen_s_ago");
+	write_seen(json, live, TRACK_WAND, "wand_seen_s_ago");
 	json_u64(json, "dropped", live->trackers->history.dropped);
 	json_open(json, "head_m", '[');
 	for (int i = 0; i < 3; i++)
 		json_f64(json, NULL, (double)head->p[i]);
 	json_close(json, ']');
-	trackers_write_json(live->trackers, json, "trackers", now_ns);
+	trackers_write_json(live->trackers, json, "trackers", now_ns, false);
 	json_close(json, '}');
 }
 
@@ -349,6 +361,17 @@ static void answer_step(struct master *m, char *const *words, int count, char *a
 	}
 }
 
+static void answer_trackers(const struct master *m, char *answer, size_t size)
+{
+	size_t len;
+
+	if (!m->params.live)
+		control_refuse(answer, size, "a recording is replayed: no tracker is asked");
+	else if (trackers_answer(m->params.live->trackers, gr_clock_now(&gr_clock_monotonic), answer,
+				 size, &len) < 0)
+		control_refuse(answer, size, "the answer is longer than %zu bytes", size);
+}
+
 void master_answer(void *ctx, char *const *words, int count, char *answer, size_t size)
 {
 	struct master *m = ctx;
@@ -357,6 +380,8 @@ void master_answer(void *ctx, char *const *words, int count, char *answer, size_
 	if (!strcmp(words[0], "status") && count == 1) {
 		if (master_write_json(m, gr_clock_now(&gr_clock_monotonic), answer, size, &len) < 0)
 			control_refuse(answer, size, "the answer is longer than %zu bytes", size);
+	} else if (!strcmp(words[0], "trackers") && count == 1) {
+		answer_trackers(m, answer, size);
 	} else if (!strcmp(words[0], "set")) {
 		answer_set(m, words, count, answer, size);
 	} else if (!strcmp(words[0], "step")) {
@@ -370,7 +395,7 @@ void master_answer(void *ctx, char *const *words, int count, char *answer, size_
 		answer_ok(answer, size);
 		loop_stop(m->loop);
 	} else {
-		control_refuse(answer, size, "no request '%.40s'; there are status, set NAME VALUE..., record, step, quit",
+		control_refuse(answer, size, "no request '%.40s'; there are status, trackers, set NAME VALUE..., record, step, quit",
 			       words[0]);
 	}
 }

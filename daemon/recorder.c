@@ -13,6 +13,8 @@
 
 #define HINT_FOLDER "/var/lib/grotto"
 
+_Static_assert(RECORD_AXES == TRACK_AXES, "a sample's axes must have room");
+
 int recorder_create(struct recorder **out)
 {
 	/* Where the shipped unit lets it write, see systemd.exec(5). */
@@ -166,11 +168,15 @@ void recorder_sample(struct recorder *r, int64_t now_ns, size_t tracker,
 	entry.sample = (struct record_sample){
 		.tracker = (uint8_t)tracker,
 		.body = (uint8_t)sample->body,
-		.flags = (uint8_t)((sample->valid ? RECORD_VALID : 0) | (taken ? RECORD_TAKEN : 0)),
+		.flags = (uint8_t)((sample->valid ? RECORD_VALID : 0) | (taken ? RECORD_TAKEN : 0) |
+				   (sample->device_timed ? RECORD_TIMED : 0)),
+		.axis_count = (uint8_t)sample->axis_count,
+		.device_ns = sample->device_ns,
 		.time_ns = sample->time_ns,
 		.T_room_body = sample->T_room_body,
 		.buttons = sample->buttons,
 	};
+	memcpy(entry.sample.axes, sample->axes, sizeof entry.sample.axes);
 	record_writer_put(r->writer, &entry);
 }
 

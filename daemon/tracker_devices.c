@@ -89,3 +89,17 @@ int tracker_bindings(struct track_binding *out, const struct layout *layout,
 			result = GR_ERR_CONFIG;
 	return result;
 }
+
+void tracker_devices_check(const struct layout *layout, struct gr_diag *diag)
+{
+	for (size_t i = 0; i < layout->tracker_count; i++) {
+		const struct layout_tracker *tracker = &layout->trackers[i];
+		struct track_binding bindings[LAYOUT_MAX_BINDINGS];
+		struct track_device *device = NULL;
+
+		if (layout_tracker_is_device(tracker) &&
+		    tracker_device_create(&device, layout, tracker, diag) >= 0)
+			(void)tracker_bindings(bindings, layout, tracker, device->ops, diag);
+		track_device_destroy(&device);
+	}
+}

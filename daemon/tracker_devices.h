@@ -19,5 +19,7 @@ int tracker_device_create(struct track_device **out, const struct layout *layout
 int tracker_bindings(struct track_binding *out, const struct layout *layout,
 		     const struct layout_tracker *tracker, const struct track_device_ops *ops,
 		     struct gr_diag *diag);
+/* Whether the devices have what the layout asks of them by name; opens none. Faults go to diag. */
+void tracker_devices_check(const struct layout *layout, struct gr_diag *diag);
 
 #endif

@@ -131,11 +131,12 @@ void trackers_close(struct trackers *trackers)
 static void take(struct trackers *trackers, size_t i, const struct track_sample *sample,
 		 int64_t now_ns)
 {
-	const struct layout_tracker *tracker = trackers->all[i].of;
-	const bool wanted = sample->body == TRACK_HEAD ? tracker->head : tracker->wand;
+	struct tracker *t = &trackers->all[i];
+	const bool wanted = sample->body == TRACK_HEAD ? t->of->head : t->of->wand;
 	const bool taken = wanted && track_history_add(&trackers->history, sample, now_ns) == GR_OK;
 
-	tracker_stats_sample(&trackers->all[i].stats, sample->body, sample->valid);
+	tracker_stats_sample(&t->stats, sample->body, sample->valid);
+	t->bodies[sample->body] = (struct tracker_body){ true, *sample, t->stats.heard_ns };
 	if (trackers->tap.sample)
 		trackers->tap.sample(trackers->tap.ctx, i, sample, taken);
 }

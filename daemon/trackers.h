@@ -10,7 +10,6 @@
 #define GROTTO_DAEMON_TRACKERS_H
 
 #include "config/layout.h"
-#include "daemon/json.h"
 #include "daemon/master_state.h"
 #include "daemon/tracker_stats.h"
 #include "tracking/bind.h"
@@ -20,6 +19,8 @@
 #define TRACKERS_MAX 8
 #define TRACKERS_AHEAD_NS (100 * INT64_C(1000000)) /* poses are extrapolated at most this far */
 #define TRACKERS_STALE_NS (500 * INT64_C(1000000)) /* older than this: not tracked */
+
+struct json; /* daemon/json.h, whose names are those of json-c, too */
 
 /* Told of every sample, as it came; taken: the history has it. */
 struct trackers_tap {
@@ -35,6 +36,11 @@ struct tracker {
 	struct track_reader reader;
 	struct track_binding bindings[LAYOUT_MAX_BINDINGS];
 	struct tracker_stats stats;
+	struct tracker_body {
+		bool said;
+		struct track_sample last; /* as it came, used or not */
+		int64_t arrived_ns;	  /* CLOCK_MONOTONIC */
+	} bodies[TRACK_BODIES];
 };
 
 struct trackers {
@@ -63,8 +69,14 @@ void trackers_poll(struct trackers *trackers, int64_t now_ns, int64_t monotonic_
 /* Head, wand and buttons at photon_ns into `input`; a body never seen keeps its pose there. */
 void trackers_sample(const struct trackers *trackers, int64_t photon_ns,
 		     struct master_input *input);
-/* An array: for each tracker its state, rate, age, drop-outs, faults. */
+/*
+ * An array: for each tracker its state, rate, age, drop-outs, faults; with
+ * `poses` what it said last of each body, too.
+ */
 void trackers_write_json(const struct trackers *trackers, struct json *json, const char *key,
-			 int64_t monotonic_ns);
+			 int64_t monotonic_ns, bool poses);
+/* An object of a whole answer: "ok" and the array "trackers". GR_OK, GR_ERR_RANGE (too long). */
+int trackers_answer(const struct trackers *trackers, int64_t monotonic_ns, char *text, size_t size,
+		    size_t *out_len);
 
 #endif

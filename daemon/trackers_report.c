@@ -1,6 +1,9 @@
 /* What a person is told of the trackers. */
 #include "daemon/trackers.h"
 
+#include "base/result.h"
+#include "daemon/json.h"
+
 static void write_faults(struct json *json, const struct track_counters *counters)
 {
 	json_open(json, "faults", '{');
@@ -31,7 +34,36 @@ static void write_device(struct json *json, const struct tracker *t, int64_t now
 	write_faults(json, &counters);
 }
 
-static void write_tracker(struct json *json, const struct tracker *t, int64_t now_ns)
+static void write_numbers(struct json *json, const char *key, const float *values, size_t count)
+{
+	json_open(json, key, '[');
+	for (size_t i = 0; i < count; i++)
+		json_f64(json, NULL, (double)values[i]);
+	json_close(json, ']');
+}
+
+static void write_poses(struct json *json, const struct tracker *t, int64_t now_ns)
+{
+	json_open(json, "poses", '[');
+	for (int body = 0; body < TRACK_BODIES; body++) {
+		const struct tracker_body *b = &t->bodies[body];
+
+		if (!b->said)
+			continue;
+		json_open(json, NULL, '{');
+		json_string(json, "body", track_body_name((enum track_body)body));
+		json_bool(json, "tracked", b->last.valid);
+		json_f64(json, "age_ms", (double)(now_ns - b->arrived_ns) * 1e-6);
+		write_numbers(json, "position_m", b->last.T_room_body.p, 3);
+		write_numbers(json, "orientation", b->last.T_room_body.q, 4);
+		json_u64(json, "buttons", b->last.buttons);
+		write_numbers(json, "axes", b->last.axes, b->last.axis_count);
+		json_close(json, '}');
+	}
+	json_close(json, ']');
+}
+
+static void write_tracker(struct json *json, const struct tracker *t, int64_t now_ns, bool poses)
 {
 	json_open(json, NULL, '{');
 	json_string(json, "name", t->of->name);
@@ -54,14 +86,29 @@ static void write_tracker(struct json *json, const struct tracker *t, int64_t no
 		if (t->stats.tracked[body])
 			json_string(json, NULL, track_body_name((enum track_body)body));
 	json_close(json, ']');
+	if (poses)
+		write_poses(json, t, now_ns);
 	json_close(json, '}');
 }
 
 void trackers_write_json(const struct trackers *trackers, struct json *json, const char *key,
-			 int64_t now_ns)
+			 int64_t now_ns, bool poses)
 {
 	json_open(json, key, '[');
 	for (size_t i = 0; i < trackers->count; i++)
-		write_tracker(json, &trackers->all[i], now_ns);
+		write_tracker(json, &trackers->all[i], now_ns, poses);
 	json_close(json, ']');
+}
+
+int trackers_answer(const struct trackers *trackers, int64_t now_ns, char *text, size_t size,
+		    size_t *out_len)
+{
+	struct json json = json_start(text, size);
+
+	json_open(&json, NULL, '{');
+	json_bool(&json, "ok", true);
+	trackers_write_json(trackers, &json, "trackers", now_ns, true);
+	json_close(&json, '}');
+	*out_len = json.len;
+	return json.ok ? GR_OK : GR_ERR_RANGE;
 }

@@ -50,7 +50,7 @@ static void write_heads(FILE *const files[RECORD_TABLES])
 {
 	static const char samples[] =
 		"arrived_s,sample_s,tracker,valid,used,x_m,y_m,z_m,qx,qy,qz,qw,buttons,"
-		"axis0,axis1,axis2,axis3,axis4,axis5,axis6,axis7\n";
+		"axis0,axis1,axis2,axis3,axis4,axis5,axis6,axis7,device_s\n";
 
 	for (int i = RECORD_TABLE_HEAD; i <= RECORD_TABLE_WAND; i++)
 		if (files[i])
@@ -82,6 +82,9 @@ static void write_sample(const struct csv *csv, int64_t time_ns, const struct re
 	csv_floats(file, s->axes, s->axis_count);
 	for (int i = s->axis_count; i < RECORD_AXES; i++)
 		fputc(',', file);
+	fputc(',', file);
+	if (s->flags & RECORD_TIMED)
+		csv_seconds(file, s->device_ns);
 	fputc('\n', file);
 }
 

@@ -46,6 +46,8 @@ static void write_sample(struct gr_writer *w, const struct record_sample *s)
 	gr_write_u32(w, s->buttons);
 	for (int i = 0; i < s->axis_count; i++)
 		gr_write_f32(w, s->axes[i]);
+	if (s->flags & RECORD_TIMED)
+		gr_write_u64(w, (uint64_t)s->device_ns);
 }
 
 static bool read_sample(struct gr_reader *r, const struct record_session *session,
@@ -68,8 +70,11 @@ static bool read_sample(struct gr_reader *r, const struct record_session *sessio
 		return false;
 	for (int i = 0; i < s->axis_count; i++)
 		s->axes[i] = gr_read_f32(r);
+	if (s->flags & RECORD_TIMED)
+		s->device_ns = (int64_t)gr_read_u64(r);
 	return gr_reader_done(r) && s->tracker < session->tracker_count && s->body < BODIES &&
-	       !(s->flags & ~both) && (s->flags != both || gr_pose_valid(&s->T_room_body));
+	       !(s->flags & ~(both | RECORD_TIMED)) &&
+	       ((s->flags & both) != both || gr_pose_valid(&s->T_room_body));
 }
 
 static void write_frame(struct gr_writer *w, const struct record_frame *f)

@@ -110,10 +110,12 @@ enum record_entry_kind {
 
 #define RECORD_VALID 1u /* the device had the body */
 #define RECORD_TAKEN 2u /* the master used it */
+#define RECORD_TIMED 4u /* the device said when it was, by its own clock */
 struct record_sample {
 	uint8_t tracker, body; /* of the layout, in its order; enum track_body */
 	uint8_t flags, axis_count;
 	int64_t time_ns; /* when the body was there; scale of scene times */
+	int64_t device_ns; /* with RECORD_TIMED: the same by the device's own clock */
 	struct gr_pose T_room_body; /* as it came: sound only with both flags */
 	uint32_t buttons;
 	float axes[RECORD_AXES];

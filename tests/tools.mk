@@ -28,8 +28,9 @@ tests_unit_test_bench_LDADD = tools/libgbench.a tools/libgtools.a $(RENDERER_LIB
 
 # The command from outside. Scripts run in the build folder and read $(srcdir).
 dist_check_SCRIPTS += tests/command/bake.sh tests/command/check.sh tests/command/demo.sh tests/command/double.sh \
-	tests/command/report.sh
-TESTS += tests/command/bake.sh tests/command/check.sh tests/command/demo.sh tests/command/report.sh
+	tests/command/report.sh tests/command/trackers.sh
+TESTS += tests/command/bake.sh tests/command/check.sh tests/command/demo.sh tests/command/report.sh \
+	tests/command/trackers.sh
 EXTRA_DIST += \
 	tests/command/lib.sh \
 	tests/data/key-missing.cave \

@@ -2,6 +2,7 @@
 #include "base/result.h"
 #include "config/layout.h"
 #include "config/scene_file.h"
+#include "daemon/tracker_devices.h"
 #include "protocol/key.h"
 #include "renderer/scene/brdf_table.h"
 #include "renderer/scene/environment.h"
@@ -88,6 +89,7 @@ static void check_layout(const char *path, struct gr_diag *diag)
 	if (layout_load(path, &layout, diag) != GR_OK)
 		return;
 	check_key(layout, diag);
+	tracker_devices_check(layout, diag);
 	layout_report_geometry(layout, diag);
 	gr_diag_add(diag, GR_DIAG_NOTE, path, 0, NULL, "layout \"%s\": %zu wall%s, %zu node%s",
 		    layout->name, layout->wall_count, layout->wall_count == 1 ? "" : "s",

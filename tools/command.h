@@ -18,5 +18,6 @@ int command_reference(int argc, char **argv);
 int command_replay(int argc, char **argv);
 int command_render(int argc, char **argv);
 int command_status(int argc, char **argv);
+int command_trackers(int argc, char **argv);
 
 #endif

@@ -25,6 +25,7 @@ static const struct command {
 	{ "render", command_render, "draw one still of a scene" },
 	{ "replay", command_replay, "show a recording again, and check every state" },
 	{ "status", command_status, "ask the running master how its room is" },
+	{ "trackers", command_trackers, "show what the trackers say, record it" },
 };
 
 #define COMMAND_COUNT (sizeof commands / sizeof commands[0])

@@ -38,8 +38,9 @@ tools_grotto_SOURCES = \
 	tools/reference_view.c \
 	tools/render.c \
 	tools/replay.c \
-	tools/status.c
+	tools/status.c \
+	tools/trackers.c tools/trackers_print.c tools/trackers_print.h
 tools_grotto_CPPFLAGS = $(AM_CPPFLAGS) -DGROTTO_SBINDIR='"$(sbindir)"' \
 	-DGROTTO_PKGLIBEXECDIR='"$(pkglibexecdir)"'
 tools_grotto_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(JSONC_CFLAGS)
-tools_grotto_LDADD = tools/libgbench.a $(DOCTOR_LIBS) $(RECORD_LIBS) $(RENDERER_LIBS) $(PROTOCOL_LIBS) $(CONFIG_LIBS) $(JSONC_LIBS)
+tools_grotto_LDADD = tools/libgbench.a $(DOCTOR_LIBS) $(TRACKING_LIBS) $(RECORD_LIBS) $(RENDERER_LIBS) $(PROTOCOL_LIBS) $(CONFIG_LIBS) $(JSONC_LIBS)

@@ -8,6 +8,7 @@
 #include "tools/command.h"
 #include "tools/report.h"
 #include "tools/say.h"
+#include "tools/trackers_print.h"
 
 #include <errno.h>
 #include <stdbool.h>
@@ -179,6 +180,29 @@ static void print_faults(struct json_object *status)
 		       (long long)report_count(faults, "duplicated"));
 }
 
+/* Whose pose is held, since when. */
+static void print_lost(struct json_object *status, const char *body, const char *tracked,
+		       const char *seen)
+{
+	/* Of a room without trackers, and one that has only just begun, there is nothing to say. */
+	if (json_object_get_boolean(report_member(status, tracked)) || !report_member(status, seen))
+		return;
+	printf("the %s is lost, last seen %.1f s ago\n", body, report_number(status, seen));
+}
+
+static void print_tracking(struct json_object *status)
+{
+	struct json_object *trackers = report_member(status, "tracking.trackers");
+
+	if (!json_object_is_type(trackers, json_type_array) || !json_object_array_length(trackers))
+		return;
+	printf("\n");
+	trackers_print(trackers);
+	print_lost(status, "head", "tracking.head_tracked", "tracking.head_seen_s_ago");
+	print_lost(status, "wand", "tracking.wand_tracked", "tracking.wand_seen_s_ago");
+	printf("\n");
+}
+
 static void print_status(struct json_object *status)
 {
 	bool running = json_object_get_boolean(report_member(status, "running"));
@@ -187,6 +211,7 @@ static void print_status(struct json_object *status)
 	       report_text(status, "scene"), running ? "running" : "waiting for nodes",
 	       (long long)report_count(status, "frame"), report_number(status, "uptime_s"));
 	print_nodes(status);
+	print_tracking(status);
 	printf("\n");
 	print_skew(status, "swap skew, told", "skew_told_us");
 	print_skew(status, "swap skew, at a time", "skew_scheduled_us");

@@ -212,3 +212,16 @@ bool track_history_at(const struct track_history *history, enum track_body body,
 		*tracked = seen;
 	return true;
 }
+
+bool track_history_seen(const struct track_history *history, enum track_body body, int64_t *time_ns)
+{
+	for (uint64_t back = 0; back < kept(history, body); back++) {
+		const struct track_sample *sample = nth_last(history, body, back);
+
+		if (!sample->valid)
+			continue;
+		*time_ns = sample->time_ns;
+		return true;
+	}
+	return false;
+}

@@ -93,5 +93,8 @@ int track_history_add(struct track_history *history, const struct track_sample *
 bool track_history_at(const struct track_history *history, enum track_body body, int64_t time_ns,
 		      int64_t max_ahead_ns, int64_t stale_ns, struct track_sample *out,
 		      bool *tracked);
+/* When the body was last seen: the time of its last valid sample. False: never, as far as is known. */
+bool track_history_seen(const struct track_history *history, enum track_body body,
+			int64_t *time_ns);
 
 #endif

@@ -10,9 +10,9 @@ static struct record_entry random_entry(struct unit_random *r, uint8_t *delta, s
 
 	switch (e.kind) {
 	case RECORD_SAMPLE:
-		e.sample = (struct record_sample){ .body = unit_random_u32(r) % 2, .flags = unit_random_u32(r) % 4,
+		e.sample = (struct record_sample){ .body = unit_random_u32(r) % 2, .flags = unit_random_u32(r) % 8,
 						   .axis_count = (uint8_t)(unit_random_u32(r) % 9), .time_ns = -5,
-						   .T_room_body = GR_POSE_IDENTITY, .buttons = unit_random_u32(r) };
+						   .T_room_body = GR_POSE_IDENTITY, .buttons = unit_random_u32(r), .device_ns = -1 - (int64_t)unit_random_u32(r) };
 		for (int i = 0; i < e.sample.axis_count; i++)
 			e.sample.axes[i] = (float)unit_random_range(r, -1, 1);
 		break;
@@ -68,7 +68,7 @@ static void fields_are_checked(void **state)
 	static const struct { struct record_entry e; const char *what; } bad[] = {
 		{ { RECORD_SAMPLE, 1, { .sample = { .tracker = 1 } } }, "tracker" },
 		{ { RECORD_SAMPLE, 1, { .sample = { .body = 2 } } }, "body" },
-		{ { RECORD_SAMPLE, 1, { .sample = { .flags = 4 } } }, "flags" },
+		{ { RECORD_SAMPLE, 1, { .sample = { .flags = 8 } } }, "flags" },
 		{ { RECORD_SAMPLE, 1, { .sample = { .flags = 3 } } }, "pose" },
 		{ { RECORD_SWAP, -1, { .swap = { 1, 0 } } }, "time" },
 		{ { RECORD_SWAP, 1, { .swap = { 0, 0 } } }, "frame 0" },
