@@ -8,6 +8,13 @@ CLUSTER_SIM_SOURCES = tests/unit/cluster_sim.c tests/unit/cluster_sim.h \
 	tests/unit/cluster_sim_net.c tests/unit/cluster_sim_private.h tests/unit/unit.h
 SHARE_ROOM_SOURCES = tests/unit/share_room.c tests/unit/share_room.h $(CLUSTER_SIM_SOURCES)
 
+# The same with longer states: the protocol built for bench-delivery's table.
+CLUSTER_BALLAST_SOURCES = $(CLUSTER_SIM_SOURCES) \
+	tools/bench/ballast/protocol/params.def $(protocol_libgprotocol_a_SOURCES)
+CLUSTER_BALLAST_CPPFLAGS = -iquote $(top_srcdir)/tools/bench/ballast $(AM_CPPFLAGS)
+CLUSTER_BALLAST_CFLAGS = $(PROTOCOL_TEST_CFLAGS) $(ISAL_CFLAGS)
+CLUSTER_BALLAST_LDADD = $(BASE_LIBS) $(LZO_LIBS) $(ISAL_LIBS) $(CMOCKA_LIBS)
+
 PROTOCOL_TESTS = \
 	tests/unit/test_clock_offset \
 	tests/unit/test_cluster \
@@ -18,6 +25,9 @@ PROTOCOL_TESTS = \
 	tests/unit/test_pace \
 	tests/unit/test_pack \
 	tests/unit/test_parity \
+	tests/unit/test_repair \
+	tests/unit/test_weather_4k \
+	tests/unit/test_weather_64k \
 	tests/unit/test_params \
 	tests/unit/test_peer \
 	tests/unit/test_share \
@@ -54,6 +64,18 @@ tests_unit_test_pace_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_parity_SOURCES = tests/unit/test_parity.c tests/unit/unit.h
 tests_unit_test_parity_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_parity_LDADD = $(PROTOCOL_TEST_LDADD)
+tests_unit_test_repair_SOURCES = tests/unit/test_repair.c $(CLUSTER_BALLAST_SOURCES)
+tests_unit_test_repair_CPPFLAGS = $(CLUSTER_BALLAST_CPPFLAGS) -DBALLAST_WORDS=970
+tests_unit_test_repair_CFLAGS = $(CLUSTER_BALLAST_CFLAGS)
+tests_unit_test_repair_LDADD = $(CLUSTER_BALLAST_LDADD)
+tests_unit_test_weather_4k_SOURCES = tests/unit/test_weather.c $(CLUSTER_BALLAST_SOURCES)
+tests_unit_test_weather_4k_CPPFLAGS = $(CLUSTER_BALLAST_CPPFLAGS) -DBALLAST_WORDS=970
+tests_unit_test_weather_4k_CFLAGS = $(CLUSTER_BALLAST_CFLAGS)
+tests_unit_test_weather_4k_LDADD = $(CLUSTER_BALLAST_LDADD)
+tests_unit_test_weather_64k_SOURCES = tests/unit/test_weather.c $(CLUSTER_BALLAST_SOURCES)
+tests_unit_test_weather_64k_CPPFLAGS = $(CLUSTER_BALLAST_CPPFLAGS) -DBALLAST_WORDS=16000
+tests_unit_test_weather_64k_CFLAGS = $(CLUSTER_BALLAST_CFLAGS)
+tests_unit_test_weather_64k_LDADD = $(CLUSTER_BALLAST_LDADD)
 tests_unit_test_pack_SOURCES = tests/unit/test_pack.c tests/unit/unit.h
 tests_unit_test_pack_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_pack_LDADD = $(PROTOCOL_TEST_LDADD)

@@ -49,6 +49,7 @@ void sim_start_master(struct sim *s)
 		.evict_frames = s->evict_frames,
 		.pace = s->pace,
 		.multicast = s->multicast,
+		.parity = s->parity,
 		.swap = s->swap,
 		.swap_lead_most_ns = SIM_LEAD_MOST_NS,
 		.probe_group = s->probe_group,

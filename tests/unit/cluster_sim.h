@@ -67,6 +67,7 @@ struct sim {
 	int64_t delay_ns, jitter_ns;
 	size_t datagram_max;
 	enum fdp_swap swap;
+	enum fdp_parity parity;
 	int64_t slow_ns; /* what the way to the nodes takes longer than the way from them */
 	bool probe_group;
 	bool multicast, lamps; /* lamps: the larger parameters change every frame too */
@@ -115,6 +116,8 @@ struct sim {
 	size_t share_bytes; /* 0: nothing is shared */
 	void (*begin_light)(struct sim_node *n, uint64_t frame);
 	void (*light_done)(struct sim_node *n, uint64_t frame);
+	/* More of the state of a frame that begins. */
+	void (*more_state)(struct sim *sim, uint64_t frame);
 	/* May change a datagram on its way; false drops it. */
 	bool (*tamper)(struct sim *sim, int to, uint8_t *bytes, size_t len);
 	void *tamper_ctx;

@@ -180,6 +180,8 @@ void sim_begin_frame(struct sim *s)
 		assert_true(param_set(s->state, k ? PARAM_LAMP_POSITION : PARAM_LAMP_INTENSITY,
 				      lamps, frame) >= 0);
 	}
+	if (s->more_state)
+		s->more_state(s, frame);
 	s->frame = frame;
 	s->begun_ns = s->now_ns;
 	s->begin_at_ns = INT64_MAX;

@@ -21,7 +21,7 @@
 struct options {
 	struct cluster_options cluster; /* first: what measure() is given */
 	int peers;
-	const char *loss;
+	const char *loss, *parity;
 };
 
 /* In the order of the table; `word` is the option's. */
@@ -29,11 +29,17 @@ static const struct kind_of_loss {
 	const char *word;
 	struct delivery_loss loss;
 } losses[] = {
-	{ "0", { "0 %", 0, 0 } }, { "1", { "1 %", 10, 0 } }, { "5", { "5 %", 50, 0 } },
+	{ "0", { "0 %", 0, 0, 0 } }, { "1", { "1 %", 10, 0, 0 } }, { "5", { "5 %", 50, 0, 0 } },
 	/* The kernel counts in jiffies: 4 ms become 4 to 8. */
-	{ "burst", { "bursts", 2, 4 } },
+	{ "burst", { "bursts", 2, 4, 0 } },
+	{ "runs", { "5 % in runs of 4", 50, 0, 4 } },
 };
 #define LOSSES (sizeof losses / sizeof *losses)
+
+static const char *const parities[] = {
+	[FDP_PARITY_AUTO] = "auto", [FDP_PARITY_OFF] = "off", [FDP_PARITY_ON] = "on",
+};
+#define PARITIES (sizeof parities / sizeof *parities)
 
 static struct delivery_room *make_room(const struct cluster_options *o)
 {
@@ -201,13 +207,14 @@ static int run_all(struct delivery_room *room, const struct options *o)
 	printf("| bytes | nodes | Hz | loss | who | p50 / p99 / worst, us | in floor's p50 | over 8.3 ms, ppm | "
 	       "missed, ppm | bytes an update |\n|---|---|---|---|---|---|---|---|---|---|\n");
 	for (size_t k = 0; k < LOSSES; k++) {
-		/* Loopback loses nothing. */
-		if (!room->cluster.spaces && losses[k].loss.permille)
+		/* Loopback loses nothing by itself. */
+		if (!room->cluster.spaces && losses[k].loss.permille && !losses[k].loss.run)
 			continue;
 		if (strcmp(o->loss, "all") != 0 && strcmp(o->loss, losses[k].word) != 0)
 			continue;
 		room->loss = losses[k].loss;
-		if (!run_loss(room, &o->cluster, ways, &floor))
+		/* The peers' datagrams are not ours to drop. */
+		if (!run_loss(room, &o->cluster, room->loss.run ? DELIVERY_PEER : ways, &floor))
 			return GR_EXIT_RUNTIME;
 	}
 	return GR_EXIT_OK;
@@ -220,8 +227,20 @@ static bool known_loss(const char *word)
 	for (size_t k = 0; k < LOSSES; k++)
 		known = known || !strcmp(word, losses[k].word);
 	if (!known)
-		fprintf(stderr, "--loss %s: it is 0, 1, 5, burst or all\n", word);
+		fprintf(stderr, "--loss %s: it is 0, 1, 5, burst, runs or all\n", word);
 	return known;
+}
+
+static bool known_parity(const char *word, enum fdp_parity *out)
+{
+	for (size_t k = 0; k < PARITIES; k++) {
+		if (strcmp(parities[k], word) != 0)
+			continue;
+		*out = (enum fdp_parity)k;
+		return true;
+	}
+	fprintf(stderr, "--parity %s: it is auto, off or on\n", word);
+	return false;
 }
 
 static int measure(const struct cluster_options *cluster);
@@ -231,7 +250,8 @@ static struct cluster_bench make_bench(const struct cli_option *options, size_t 
 	return (struct cluster_bench){
 		.name = "bench-delivery",
 		.usage = "bench-delivery-SIZE [--nodes N] [--rate HZ] [--updates N] [--runs N] [--loopback 1] "
-			 "[--multicast 1] [--peers 1] [--loss 0|1|5|burst|all]",
+			 "[--multicast 1] [--peers 1] [--loss 0|1|5|burst|runs|all] "
+			 "[--parity auto|off|on]",
 		.summary = "How long an update of SIZE takes from the master to the last node, beside bare datagrams\n"
 			   "and with --peers beside TCP, ENet, NORM and OpenPGM, with loss and without; in network\n"
 			   "namespaces where that is allowed, else over loopback.",
@@ -247,15 +267,17 @@ static int measure(const struct cluster_options *cluster)
 	const struct options *o = (const struct options *)cluster;
 	const struct cluster_bench bench = make_bench(NULL, 0);
 	struct delivery_room *room;
+	enum fdp_parity parity;
 	int status;
 
-	if (!known_loss(o->loss))
+	if (!known_loss(o->loss) || !known_parity(o->parity, &parity))
 		return GR_EXIT_CONFIG;
 	room = make_room(cluster);
 	if (!room) {
 		fprintf(stderr, "%s: no memory\n", bench.name);
 		return GR_EXIT_RUNTIME;
 	}
+	room->parity = parity;
 	if (!cluster_begin(&room->cluster, &bench, cluster, room))
 		return GR_EXIT_RUNTIME;
 	printf("%u updates after %u, medians of %d runs, %s, %s, SCHED_RR %d\n\n", room->updates, room->warm,
@@ -270,10 +292,11 @@ static int measure(const struct cluster_options *cluster)
 
 int main(int argc, char **argv)
 {
-	struct options o = { .cluster = CLUSTER_DEFAULTS, .loss = "all" };
+	struct options o = { .cluster = CLUSTER_DEFAULTS, .loss = "all", .parity = parities[FDP_PARITY_AUTO] };
 	const struct cli_option own[] = {
 		{ "peers", 0, CLI_INT, &o.peers, 0, 1, "0|1", "others' ways, too, in namespaces (0)" },
-		{ "loss", 0, CLI_TEXT, &o.loss, 0, 0, "KIND", "0, 1 or 5 percent, burst or all (all)" },
+		{ "loss", 0, CLI_TEXT, &o.loss, 0, 0, "KIND", "0, 1 or 5 percent, burst, runs or all (all)" },
+		{ "parity", 0, CLI_TEXT, &o.parity, 0, 0, "WHEN", "FDP's parity fragments: auto, off or on (auto)" },
 	};
 	const struct cluster_bench bench = make_bench(own, sizeof own / sizeof *own);
 

@@ -7,6 +7,7 @@
 #define GROTTO_TOOLS_BENCH_DELIVERY_H
 
 #include "daemon/socket.h"
+#include "protocol/master.h"
 #include "tools/bench/peer.h"
 
 #define DELIVERY_UPDATES_MOST 200000
@@ -20,7 +21,16 @@ struct delivery_loss {
 	const char *name;  /* in the table */
 	unsigned permille; /* of datagrams at random; or of those that begin a burst */
 	unsigned burst_ms; /* nothing more comes from the same sender for so long; 0: no bursts */
+	/* By the receivers themselves, datagrams in a row, so many on average: Gilbert's model; 0: no such runs. */
+	unsigned run;
 };
+/* Of one receiver. */
+struct delivery_runs {
+	uint64_t random;
+	bool bad;
+};
+/* Whether the datagram that has just come is lost to a run. */
+bool delivery_lost(const struct delivery_loss *loss, struct delivery_runs *runs);
 
 /* Shared by all processes of a bench. */
 struct delivery_room {
@@ -28,6 +38,7 @@ struct delivery_room {
 	unsigned updates, warm; /* warm: sent before those that count */
 	size_t update_bytes;
 	struct delivery_loss loss;
+	enum fdp_parity parity;
 	/* Of this run: DELIVERY_FDP, and the two bare ways between its frames; or one of the peers. */
 	unsigned way;
 	/* Of update u, by way; of node n: [n * updates + u]. CLOCK_MONOTONIC, 0: never. */

@@ -39,6 +39,7 @@ struct master_end {
 	struct cluster_master end; /* first: the protocol's ctx */
 	struct delivery_room *room;
 	uint64_t random;
+	struct delivery_runs runs;
 	uint64_t frame;
 	int64_t next_ns;
 	struct bare {
@@ -60,6 +61,8 @@ static void master_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	struct master_end *m = ctx;
 
 	(void)from;
+	if (delivery_lost(&m->room->loss, &m->runs))
+		return;
 	fdp_master_arrived(m->end.fdp, arrived_ns);
 	fdp_master_receive(m->end.fdp, bytes, len, now(), NULL);
 }
@@ -201,8 +204,10 @@ void delivery_master(struct delivery_room *room)
 {
 	struct master_end m = {
 		.end.cluster = &room->cluster, .room = room, .random = room->cluster.session,
+		.runs.random = room->cluster.session * 1000 + 999,
 	};
-	const struct fdp_master_params params = { .deadline_ns = DEADLINE_NS, .evict_frames = 1000 };
+	const struct fdp_master_params params = { .deadline_ns = DEADLINE_NS, .evict_frames = 1000,
+						  .parity = room->parity };
 	struct fdp_counters c;
 
 	if (cluster_master_open(&m.end, params, master_event)) {
@@ -223,6 +228,7 @@ struct node_end {
 	struct delivery_room *room;
 	uint64_t ready, swap; /* frames: to be said ready, to be shown */
 	struct delivery_bare bare[DELIVERY_FDP];
+	struct delivery_runs runs;
 };
 
 static void node_event(void *ctx, const struct fdp_node_event *event)
@@ -243,6 +249,8 @@ static void node_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	struct node_end *n = ctx;
 
 	(void)from;
+	if (delivery_lost(&n->room->loss, &n->runs))
+		return;
 	if (len >= FDP_HEADER_BYTES && delivery_take_bare(n->room, n->end.index, n->bare, bytes, len))
 		return;
 	fdp_node_arrived(n->end.fdp, arrived_ns);
@@ -269,7 +277,8 @@ static void node_answer(struct node_end *n)
 
 void delivery_node(struct delivery_room *room, unsigned node)
 {
-	struct node_end n = { .end = { .cluster = &room->cluster, .index = node }, .room = room };
+	struct node_end n = { .end = { .cluster = &room->cluster, .index = node }, .room = room,
+			      .runs.random = room->cluster.session * 1000 + node };
 	int fds[2], count;
 
 	if (cluster_node_open(&n.end, node_event)) {

@@ -28,6 +28,8 @@ bool delivery_lose(const struct delivery_loss *loss)
 	char rules[RULES_MOST] = "add table netdev loss; delete table netdev loss";
 	size_t len = strlen(rules);
 
+	if (loss->run)
+		return nft(rules);
 	if (loss->permille)
 		len += (size_t)snprintf(rules + len, sizeof rules - len,
 					"; add table netdev loss; add set netdev loss bad { type ipv4_addr; "
@@ -43,4 +45,24 @@ bool delivery_lose(const struct delivery_loss *loss)
 			 "; add rule netdev loss in meta protocol ip numgen random mod 1000 < %u drop",
 			 loss->permille);
 	return nft(rules);
+}
+
+/* Uniform in [0, 1). */
+static double draw(uint64_t *state)
+{
+	*state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+	return (double)(*state >> 11) * 0x1p-53;
+}
+
+bool delivery_lost(const struct delivery_loss *loss, struct delivery_runs *runs)
+{
+	const double share = loss->permille / 1000.0;
+
+	if (!loss->run)
+		return false;
+	if (runs->bad)
+		runs->bad = draw(&runs->random) >= 1.0 / loss->run;
+	else
+		runs->bad = draw(&runs->random) < share / (1 - share) / loss->run;
+	return runs->bad;
 }
