@@ -63,6 +63,12 @@ static void build_rest(struct layout *layout, struct layout_file *file)
 	layout->network.key_file = take(&network->key_file);
 	if (layout->network.key_file && file->network.at)
 		layout->network.key_file_line = key_line(file->network.at, "key_file");
+	for (size_t i = 0; i < file->standby_count; i++) {
+		layout->standby[i] = file->standby[i].standby;
+		layout->standby[i].address = take(&file->standby[i].standby.address);
+		layout->standby[i].line = (int)config_setting_source_line(file->standby[i].at);
+	}
+	layout->standby_count = file->standby_count;
 	layout->rates = file->rates.rates;
 	layout->swap = file->swap.swap;
 	layout->slow = file->slow.slow;
@@ -95,7 +101,8 @@ static struct layout *build(struct layout_file *file, const char *path)
 	layout->walls = calloc(file->wall_count, sizeof *layout->walls);
 	layout->nodes = calloc(nodes + 1, sizeof *layout->nodes);
 	layout->trackers = calloc(file->tracker_count + 1, sizeof *layout->trackers);
-	if (!layout->path || !layout->walls || !layout->nodes || !layout->trackers) {
+	layout->standby = calloc(file->standby_count + 1, sizeof *layout->standby);
+	if (!layout->path || !layout->walls || !layout->nodes || !layout->trackers || !layout->standby) {
 		layout_destroy(&layout);
 		return NULL;
 	}
@@ -158,6 +165,9 @@ void layout_destroy(struct layout **layout)
 		free(l->nodes[i].address);
 		free(l->nodes[i].display);
 	}
+	for (size_t i = 0; i < l->standby_count; i++)
+		free(l->standby[i].address);
+	free(l->standby);
 	for (size_t i = 0; i < l->tracker_count; i++)
 		layout_tracker_free(&l->trackers[i]);
 	free(l->nodes);

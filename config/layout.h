@@ -23,6 +23,7 @@
 
 #define LAYOUT_NAME_MAX 32 /* with the final NUL */
 #define LAYOUT_MAX_NODES 64
+#define LAYOUT_MAX_STANDBY 7 /* nodes and masters are at most LAYOUT_MAX_NODES together */
 
 enum layout_eyes {
 	LAYOUT_EYES_MONO,         /* one picture from between the eyes */
@@ -91,10 +92,18 @@ struct layout_network {
 	int key_file_line; /* in the file, 0 without one */
 };
 
+/* Another machine with a master, that takes over when the one before it is silent. */
+struct layout_standby {
+	char *address; /* numeric */
+	uint16_t port;
+	int line;
+};
+
 struct layout_rates {
 	float frame_hz;
 	int64_t barrier_deadline_ns; /* after which SWAP goes out without the late */
 	int evict_frames;            /* missed in a row before a node is left out */
+	int takeover_frames;         /* within which a standby has taken over, where there is one */
 	int64_t display_latency_ns;  /* from SWAP to light on the wall, for the photon time */
 };
 
@@ -200,6 +209,8 @@ struct layout {
 	struct layout_node *nodes;
 	size_t node_count;
 	struct layout_network network;
+	struct layout_standby *standby; /* in the order in which they take over */
+	size_t standby_count;
 	struct layout_rates rates;
 	struct layout_swap swap;
 	struct layout_slow slow;
@@ -236,13 +247,13 @@ int layout_write(FILE *file, const struct layout *layout);
 /*
  * What all machines of a room must agree on, part by part in the order of the
  * file, up to `room` of them (items may be NULL), and the BLAKE2b-256 of the
- * canonical form of all: walls, nodes (name, wall, part, address, port, eyes), network, rates,
+ * canonical form of all: walls, nodes (name, wall, part, address, port, eyes), network, standbys, rates,
  * start, room, eye separation. Not of paths, comments, the key file, the
  * trackers, the control socket, tests, slow and how far ahead a swap is set (the master's own), nor of target, display,
  * monitor and gpu (one node's own). layout_load has stored it in hash. Returns the
  * number of parts, at most LAYOUT_ITEMS_MAX.
  */
-#define LAYOUT_ITEMS_MAX (2 * LAYOUT_MAX_NODES + 17)
+#define LAYOUT_ITEMS_MAX (2 * LAYOUT_MAX_NODES + 19)
 size_t layout_items(const struct layout *layout, struct gr_item *items, size_t room,
 		    uint8_t hash[32]);
 

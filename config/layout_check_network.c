@@ -8,7 +8,8 @@
 #define MTU_MIN_V6 1280
 
 struct endpoint {
-	const struct layout_file_node *node; /* NULL: the master */
+	const struct layout_file_node *node;       /* NULL: a master */
+	const struct layout_file_standby *standby; /* NULL: a node, or the first master */
 	struct address address;
 	uint16_t port;
 };
@@ -33,17 +34,35 @@ static bool machine_address(struct options_reader *reader, const config_setting_
 	return true;
 }
 
-static void check_clash(struct options_reader *reader, const struct endpoint *ends, size_t count)
+static bool end_is_first_master(const struct endpoint *end)
+{
+	return !end->node && !end->standby;
+}
+
+static const config_setting_t *end_at(const struct endpoint *end, const struct layout_file *file)
+{
+	return end->node ? end->node->at : end->standby ? end->standby->at : file->at;
+}
+
+static const char *end_address(const struct endpoint *end, const struct layout_file *file)
+{
+	return end->node      ? end->node->node.address
+	       : end->standby ? end->standby->standby.address
+			      : file->network.network.master_address;
+}
+
+static void check_clash(struct options_reader *reader, const struct layout_file *file,
+			const struct endpoint *ends, size_t count)
 {
 	const struct endpoint *last = &ends[count - 1];
 
 	for (size_t i = 0; i + 1 < count; i++) {
 		if (ends[i].port != last->port || !address_equal(&ends[i].address, &last->address))
 			continue;
-		options_fault(reader, GR_DIAG_ERROR, last->node->at, "port",
+		options_fault(reader, GR_DIAG_ERROR, end_at(last, file), "port",
 			      "%s port %u is taken by %s%s%s; give each its own",
-			      last->node->node.address, last->port,
-			      ends[i].node ? "node \"" : "the master",
+			      end_address(last, file), last->port,
+			      ends[i].node ? "node \"" : ends[i].standby ? "a standby" : "the master",
 			      ends[i].node ? ends[i].node->node.name : "", ends[i].node ? "\"" : "");
 		return;
 	}
@@ -114,12 +133,14 @@ static void check_loop(struct options_reader *reader, const struct layout_file *
 
 	if (network->loop || network->cast == LAYOUT_UNICAST || network->cast == LAYOUT_BROADCAST)
 		return;
-	for (size_t i = 1; i < count; i++)
-		if (!ends[0].node && address_equal(&ends[i].address, &ends[0].address)) {
+	for (size_t i = 0; i < count; i++)
+		for (size_t k = 0; k < count; k++) {
+			if (!ends[i].node || ends[k].node || !address_equal(&ends[i].address, &ends[k].address))
+				continue;
 			options_fault(reader, GR_DIAG_ERROR, file->at, "network.loop",
-				      "false, but node \"%s\" is on the master's machine and would not hear "
+				      "false, but node \"%s\" is on %s machine and would not hear "
 				      "the group; leave it out",
-				      ends[i].node->node.name);
+				      ends[i].node->node.name, ends[k].standby ? "a standby's" : "the master's");
 			return;
 		}
 }
@@ -158,14 +179,11 @@ static void check_key(struct options_reader *reader, const struct layout_file *f
 	if (network->key_file || options_given(file->network.at, "key_file"))
 		return;
 	for (size_t i = 0; i < count; i++) {
-		const struct layout_file_node *node = ends[i].node;
-
 		if (address_loopback(&ends[i].address))
 			continue;
-		options_fault(reader, GR_DIAG_ERROR, node ? node->at : file->at,
-			      node ? "address" : "network.master_address",
-			      "%s is not on loopback, " NEEDS_KEY,
-			      node ? node->node.address : network->master_address);
+		options_fault(reader, GR_DIAG_ERROR, end_at(&ends[i], file),
+			      end_is_first_master(&ends[i]) ? "network.master_address" : "address",
+			      "%s is not on loopback, " NEEDS_KEY, end_address(&ends[i], file));
 		return;
 	}
 	check_group_key(reader, file);
@@ -188,38 +206,62 @@ static void check_test(struct options_reader *reader, const struct layout_file *
 		options_fault(reader, GR_DIAG_WARNING, file->test.at, "off_loopback", "not used: faults is false");
 }
 
+/* How many there may be; what their addresses clash with is seen with the nodes'. */
+static void check_standbys(struct options_reader *reader, const struct layout_file *file, size_t nodes)
+{
+	const size_t masters = 1 + file->standby_count;
+
+	if (file->standby_count && nodes + masters > LAYOUT_MAX_NODES)
+		options_fault(reader, GR_DIAG_ERROR, file->at, "standby",
+			      "%zu nodes and %zu masters; a room with standbys has at most %d of both together",
+			      nodes, masters, LAYOUT_MAX_NODES);
+}
+
+/* Adds a machine, unless its address is none: the fault is told. */
+static void add_end(struct options_reader *reader, const struct layout_file *file,
+		    struct endpoint *ends, size_t *count, const struct endpoint *end)
+{
+	const char *address = end_address(end, file);
+	struct endpoint *last = &ends[*count];
+
+	*last = *end;
+	if (!address || !machine_address(reader, end_at(end, file),
+					 end_is_first_master(end) ? "network.master_address" : "address",
+					 address, &last->address))
+		return;
+	if (*count && end_is_first_master(&ends[0]) && last->address.v4 != ends[0].address.v4)
+		options_fault(reader, GR_DIAG_ERROR, end_at(end, file), "address",
+			      "is IPv%c, the master's IPv%c; use one of the two",
+			      last->address.v4 ? '4' : '6', ends[0].address.v4 ? '4' : '6');
+	++*count;
+	check_clash(reader, file, ends, *count);
+}
+
 void layout_check_network(struct options_reader *reader, struct layout_file *file)
 {
 	const struct layout_network *network = &file->network.network;
-	struct endpoint ends[LAYOUT_MAX_NODES + 1];
-	size_t count = 0;
-	bool master = network->master_address &&
-		      machine_address(reader, file->at, "network.master_address",
-				      network->master_address, &ends[0].address);
+	struct endpoint ends[LAYOUT_MAX_NODES + LAYOUT_MAX_STANDBY + 1];
+	size_t count = 0, nodes = 0;
+	bool master;
 
-	if (master) {
-		ends[0].node = NULL;
-		ends[0].port = network->master_port;
-		count = 1;
+	add_end(reader, file, ends, &count, &(struct endpoint){ .port = network->master_port });
+	master = count > 0;
+	for (size_t i = 0; i < file->standby_count; i++) {
+		const struct layout_file_standby *standby = &file->standby[i];
+
+		if (standby->at)
+			add_end(reader, file, ends, &count,
+				&(struct endpoint){ .standby = standby, .port = standby->standby.port });
 	}
 	for (size_t w = 0; w < file->wall_count; w++)
 		for (size_t n = 0; n < file->walls[w].node_count; n++) {
 			const struct layout_file_node *node = &file->walls[w].nodes[n];
 
-			if (count == LAYOUT_MAX_NODES + 1 || !node->at || !node->node.address ||
-			    !machine_address(reader, node->at, "address", node->node.address,
-					     &ends[count].address))
-				continue;
-			ends[count].node = node;
-			ends[count].port = node->node.port;
-			if (master && ends[count].address.v4 != ends[0].address.v4)
-				options_fault(reader, GR_DIAG_ERROR, node->at, "address",
-					      "is IPv%c, the master's IPv%c; use one of the two",
-					      ends[count].address.v4 ? '4' : '6',
-					      ends[0].address.v4 ? '4' : '6');
-			count++;
-			check_clash(reader, ends, count);
+			if (nodes++ < LAYOUT_MAX_NODES && node->at)
+				add_end(reader, file, ends, &count,
+					&(struct endpoint){ .node = node, .port = node->node.port });
 		}
+	check_standbys(reader, file, nodes);
 	check_group(reader, file, master ? &ends[0].address : NULL);
 	check_interface(reader, file);
 	check_loop(reader, file, ends, count);

@@ -46,6 +46,22 @@ static void network_items(struct canonical_items *items, const struct layout_net
 	canonical_u64(canonical_item(items, "network.mtu"), (uint64_t)network->mtu);
 }
 
+/* Of rooms that have any: others are what they were. */
+static void standby_items(struct canonical_items *items, const struct layout *layout)
+{
+	struct canonical *c;
+
+	if (!layout->standby_count)
+		return;
+	c = canonical_item(items, "standby");
+	for (size_t i = 0; i < layout->standby_count; i++) {
+		canonical_string(c, layout->standby[i].address);
+		canonical_u64(c, layout->standby[i].port);
+	}
+	canonical_u64(canonical_item(items, "rates.takeover_frames"),
+		      (uint64_t)layout->rates.takeover_frames);
+}
+
 static void rate_items(struct canonical_items *items, const struct layout_rates *rates)
 {
 	canonical_floats(canonical_item(items, "rates.frame_hz"), &rates->frame_hz, 1);
@@ -68,6 +84,7 @@ size_t layout_items(const struct layout *layout, struct gr_item *items, size_t r
 	for (size_t i = 0; i < layout->node_count; i++)
 		node_item(&c, layout, i);
 	network_items(&c, &layout->network);
+	standby_items(&c, layout);
 	rate_items(&c, &layout->rates);
 	canonical_floats(canonical_item(&c, "eye_separation_m"), &layout->eye_separation_m, 1);
 	part = canonical_item(&c, "start");

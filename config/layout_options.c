@@ -113,6 +113,15 @@ static const struct option network_options[] = {
 	{ .key = NULL },
 };
 
+static const struct option standby_options[] = {
+	{ .key = "address", .type = OPTION_STRING, .required = true,
+	  AT(layout_file_standby, standby.address),
+	  .help = "numeric address of a machine that runs grotto-master --standby" },
+	{ .key = "port", .type = OPTION_PORT, .min = 1024, .max = 65535, .standard = "27100",
+	  AT(layout_file_standby, standby.port), .help = "UDP port of that grotto-master" },
+	{ .key = NULL },
+};
+
 static const struct option rates_options[] = {
 	{ .key = "frame_hz", .type = OPTION_FLOAT, .min = 1, .max = 1000, .standard = "60",
 	  .unit = "Hz", AT(layout_file_rates, rates.frame_hz), .help = "frames a second at most" },
@@ -123,6 +132,9 @@ static const struct option rates_options[] = {
 	{ .key = "evict_frames", .type = OPTION_INT, .min = 1, .max = 1000, .standard = "3",
 	  .unit = "frames", AT(layout_file_rates, rates.evict_frames),
 	  .help = "frames that a node may miss in a row before it is left out" },
+	{ .key = "takeover_frames", .type = OPTION_INT, .min = 4, .max = 100000, .standard = "10",
+	  .unit = "frames", AT(layout_file_rates, rates.takeover_frames),
+	  .help = "with a standby: within so many it has taken over from a master that died; one that is silent for half of them is taken for dead" },
 	{ .key = "display_latency_ms", .type = OPTION_TIME, .min = 0, .max = 1000,
 	  .standard = "16.7", .scale = LAYOUT_NS_PER_MS, .unit = "ms",
 	  AT(layout_file_rates, rates.display_latency_ns),
@@ -221,6 +233,10 @@ const struct option layout_options[] = {
 	  .help = "the list of walls ( { ... }, { ... } )" },
 	{ .key = "network", .type = OPTION_GROUP, AT(layout_file, network),
 	  .group = network_options, .help = "how the machines talk" },
+	{ .key = "standby", .type = OPTION_LIST, .count = LAYOUT_MAX_STANDBY,
+	  AT(layout_file, standby), .size = sizeof(struct layout_file_standby),
+	  .count_offset = offsetof(struct layout_file, standby_count), .group = standby_options,
+	  .help = "machines with a master that stands by, in the order in which they take over" },
 	{ .key = "rates", .type = OPTION_GROUP, AT(layout_file, rates), .group = rates_options,
 	  .help = "frame rate, barrier, latency" },
 	{ .key = "swap", .type = OPTION_GROUP, AT(layout_file, swap), .group = swap_options,

@@ -39,6 +39,11 @@ struct layout_file_network {
 	struct layout_network network;
 };
 
+struct layout_file_standby {
+	const config_setting_t *at;
+	struct layout_standby standby;
+};
+
 struct layout_file_rates {
 	const config_setting_t *at;
 	struct layout_rates rates;
@@ -109,6 +114,8 @@ struct layout_file {
 	struct layout_file_test test;
 	struct layout_file_start start;
 	struct layout_file_room room;
+	struct layout_file_standby *standby;
+	size_t standby_count;
 	struct layout_file_tracker *trackers;
 	size_t tracker_count;
 };

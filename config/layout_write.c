@@ -46,9 +46,10 @@ int layout_write(FILE *file, const struct layout *layout)
 	struct layout_file_tracker *trackers = calloc(layout->tracker_count + 1, sizeof *trackers);
 	struct layout_file_binding *bindings =
 		calloc(layout->tracker_count * LAYOUT_MAX_BINDINGS + 1, sizeof *bindings);
+	struct layout_file_standby *standby = calloc(layout->standby_count + 1, sizeof *standby);
 	int result = GR_ERR_NOMEM;
 
-	if (!walls || !nodes || !trackers || !bindings)
+	if (!walls || !nodes || !trackers || !bindings || !standby)
 		goto out;
 	memcpy(form.name, layout->name, sizeof form.name);
 	form.eye_separation_m = layout->eye_separation_m;
@@ -58,6 +59,10 @@ int layout_write(FILE *file, const struct layout *layout)
 	for (size_t i = 0, used = 0; i < layout->wall_count; used += walls[i++].node_count)
 		fill_wall(layout, i, &walls[i], nodes + used);
 	form.network.network = layout->network;
+	form.standby = standby;
+	form.standby_count = layout->standby_count;
+	for (size_t i = 0; i < layout->standby_count; i++)
+		standby[i].standby = layout->standby[i];
 	form.rates.rates = layout->rates;
 	form.swap.swap = layout->swap;
 	form.slow.slow = layout->slow;
@@ -81,5 +86,6 @@ out:
 	free(nodes);
 	free(trackers);
 	free(bindings);
+	free(standby);
 	return result;
 }

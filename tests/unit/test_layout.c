@@ -193,6 +193,23 @@ static const struct fault faults[] = {
 	  "slow.limit_ms", "1001 ms, but nobody waits longer than wait_most_ms, 1000", 1 },
 	{ "mtu = 1500; };", "mtu = 1500; };\nslow = { policy = \"wait\"; wait_most_ms = 49.0; };", "slow =",
 	  "slow.wait_most_ms", "49 ms is less than all wait anyway (rates.barrier_deadline_ms, 50)", 1 },
+	/* masters that stand by */
+	{ "rates = { frame_hz = 60.0; }", "standby = ( { address = \"127.0.0.1\"; port = 5000; } )", "standby",
+	  "standby[0].port", "127.0.0.1 port 5000 is taken by the master", 1 },
+	{ "rates = { frame_hz = 60.0; }", "standby = ( { address = \"127.0.0.2\"; },\n{ address = \"127.0.0.2\"; } )",
+	  "{ address = \"127.0.0.2\"; } )", "standby[1].port", "127.0.0.2 port 27100 is taken by a standby", 1 },
+	{ "rates = { frame_hz = 60.0; }", "standby = ( { address = \"127.0.0.1\"; port = 5002; } )", "port = 5002",
+	  "walls[0].nodes[1].port", "127.0.0.1 port 5002 is taken by a standby", 1 },
+	{ "rates = { frame_hz = 60.0; }", "standby = ( { address = \"::1\"; } )", "standby", "standby[0].address",
+	  "is IPv6, the master's IPv4", 1 },
+	{ "rates = { frame_hz = 60.0; }", "standby = ( { address = \"192.0.2.9\"; } )", "standby",
+	  "standby[0].address", "192.0.2.9 is not on loopback, so every machine", 1 },
+	{ "rates = { frame_hz = 60.0; }", "standby = ( { address = \"backup\"; } )", "standby",
+	  "standby[0].address", "\"backup\" is not a numeric IPv4 or IPv6 address", 1 },
+	{ "rates = { frame_hz = 60.0; }", "standby = ( { port = 5000; } )", "standby", "standby[0].address",
+	  "missing", 1 },
+	{ "frame_hz = 60.0", "takeover_frames = 3", "takeover_frames", "rates.takeover_frames",
+	  "3 is outside 4 to 100000 frames", 1 },
 	/* the rest */
 	{ "name = \"room\"", "control_socket = \"control\"", "control_socket", "control_socket",
 	  "\"control\" is not absolute", 1 },
@@ -408,8 +425,9 @@ static const char full[] =
 	"network = { cast = \"multicast\"; interface = \"eth7\"; group = \"ff15::71\"; group_port = 3001;\n"
 	"	master_address = \"2001:db8::9\"; master_port = 3000; ttl = 4; mtu = 8999; key_file = \"k/key\"; };\n"
 	"rates = { frame_hz = 119.88; barrier_deadline_ms = 8.123457; evict_frames = 7;\n"
-	"	display_latency_ms = 12.3; };\n"
+	"	display_latency_ms = 12.3; takeover_frames = 12; };\n"
 	"slow = { policy = \"wait\"; limit_ms = 7.5; frames = 33; wait_most_ms = 123.4; rejoin_most_s = 12.5; };\n"
+	"standby = ( { address = \"2001:db8::10\"; port = 3005; }, { address = \"2001:db8::11\"; } );\n"
 	"start = { head = [0.1, 1.61, 0.2]; head_heading_deg = 13.1; head_pitch_deg = -3.7;\n"
 	"	head_roll_deg = 1.9; wand = [0.3, 1.1, -0.2]; wand_heading_deg = -20.2;\n"
 	"	wand_pitch_deg = 33.3; wand_roll_deg = 4.4; };\n"
@@ -441,6 +459,9 @@ static void test_round_trip(void **state)
 	assert_int_equal(layout->slow.frames, 33);
 	assert_int_equal(layout->slow.wait_most_ns, 123400000);
 	assert_int_equal(layout->slow.rejoin_most_ns, INT64_C(12500000000));
+	assert_int_equal(layout->standby_count, 2);
+	assert_string_equal(layout->standby[0].address, "2001:db8::10");
+	assert_int_equal(layout->standby[1].port, 27100);
 	assert_string_equal(layout->control_socket, "/tmp/a \"b\\.sock");
 	assert_true(gr_pose_valid(&layout->start_head));
 	key = layout_key_path(layout);
@@ -473,6 +494,9 @@ static void test_hash(void **state)
 		{ "mtu = 8999", "mtu = 8998", true },
 		{ "evict_frames = 7", "evict_frames = 8", true },
 		{ "policy = \"wait\"", "policy = \"evict\"", false },
+		{ "takeover_frames = 12", "takeover_frames = 13", true },
+		{ "2001:db8::10", "2001:db8::12", true },
+		{ "port = 3005", "port = 3006", true },
 		{ "head_roll_deg = 1.9", "head_roll_deg = 2.0", true },
 		{ "max = [2.0, 2.9, 3.0]", "max = [2.0, 2.9, 3.1]", true },
 		{ "walk_radius_m = 0.77", "walk_radius_m = 0.78", false },
