@@ -3,6 +3,7 @@
 #include "base/result.h"
 
 #include <math.h>
+#include <string.h>
 
 /* The frame's time on the master's scale. */
 static int64_t frame_time(const struct live_source *live, uint64_t frame, int64_t now_ns)
@@ -46,4 +47,20 @@ void live_source_init(struct live_source *live, const struct layout *layout,
 	};
 	master_state_init(&live->scene_state, layout, scene);
 	master_state_start_input(&live->scene_state, &live->input);
+}
+
+void live_source_adopt(struct live_source *live, const struct param_state *params, uint64_t last,
+		       int64_t frame_ns, int64_t now_ns)
+{
+	uint64_t time_ns;
+
+	memcpy(&time_ns, param_get(params, PARAM_FRAME_TIME), sizeof time_ns);
+	master_state_adopt(&live->scene_state, params);
+	live->last_time_ns = (int64_t)time_ns;
+	live->start_ns = frame_ns;
+	live->base_ns = live->last_time_ns;
+	/* By the frame clock scene time is a function of the number alone. */
+	if (live->frame_clock)
+		live->base_ns += now_ns - frame_ns -
+				 llrint((double)last * 1e9 / (double)live->layout->rates.frame_hz);
 }

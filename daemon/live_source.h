@@ -27,4 +27,11 @@ struct live_source {
 void live_source_init(struct live_source *live, const struct layout *layout,
 		      const struct scene_file *scene, struct trackers *trackers, bool frame_clock);
 
+/*
+ * Goes on from another master's frame, which was shown at about frame_ns: scene time
+ * has gone on since. Frame numbers go on from `last`.
+ */
+void live_source_adopt(struct live_source *live, const struct param_state *params, uint64_t last,
+		       int64_t frame_ns, int64_t now_ns);
+
 #endif

@@ -40,12 +40,14 @@ DAEMON_LIBS = daemon/libgdaemon.a $(RECORD_LIBS) $(TRACKING_LIBS) $(RENDERER_LIB
 sbin_PROGRAMS += daemon/grotto-master daemon/grotto-node
 
 daemon_grotto_master_SOURCES = \
-	daemon/master.c daemon/master.h \
+	daemon/master.c daemon/master.h daemon/master_private.h \
+	daemon/master_events.c \
 	daemon/master_main.c \
 	daemon/master_pace.c daemon/master_pace.h \
 	daemon/master_record.c \
 	daemon/master_save.c \
 	daemon/master_report.c \
+	daemon/master_role.c \
 	daemon/room_files.c daemon/room_files.h
 daemon_grotto_master_CFLAGS = $(DAEMON_CFLAGS)
 daemon_grotto_master_LDADD = $(DAEMON_LIBS)

@@ -1,4 +1,4 @@
-#include "daemon/master.h"
+#include "daemon/master_private.h"
 
 #include "base/clock.h"
 #include "base/result.h"
@@ -20,17 +20,6 @@
 #define RESTART_PATIENCE_NS (30 * GR_NS_PER_S) /* but no longer, unless the deadline is */
 #define LIGHT_RESTART_NS GR_NS_PER_S /* a slow node may not make the others start over more often */
 
-static const char *node_name(const struct master *m, int node)
-{
-	return node >= 0 && (size_t)node < m->params.layout->node_count ?
-		       m->params.layout->nodes[node].name : "?";
-}
-
-static size_t members(const struct master *m)
-{
-	return (size_t)__builtin_popcountll(m->members);
-}
-
 _Static_assert(NET_TO_ALL == FDP_TO_ALL && NET_TO_GROUP == FDP_TO_GROUP,
 	       "what the protocol says goes to the socket as it is");
 
@@ -43,97 +32,6 @@ static void send_datagram(void *ctx, int to, const uint8_t *bytes, size_t len)
 		faults_send_to(m->faults, m->net, m->from, bytes, len);
 	else
 		faults_send(m->faults, m->net, to, m->params.layout->node_count, bytes, len);
-}
-
-static void node_gone(struct master *m, int node)
-{
-	m->members &= ~(UINT64_C(1) << node);
-	m->behind &= ~(UINT64_C(1) << node);
-	frame_stats_gone(&m->stats, (unsigned)node);
-}
-
-static void node_refused(struct master *m, const struct fdp_master_event *event, int64_t now_ns)
-{
-	struct gr_log_limit *limit = &m->refused_limit[event->node < 0 ? 0 : event->node % FDP_MAX_NODES];
-	uint64_t times;
-
-	m->refused++;
-	if (gr_log_limit(limit, now_ns, &times))
-		gr_error("node %s may not join: %s", node_name(m, event->node),
-			 event->reason ? event->reason : "no reason given");
-}
-
-static void node_mismatch(struct master *m, const struct fdp_master_event *event, int64_t now_ns)
-{
-	uint64_t times;
-
-	if (gr_log_limit(&m->mismatch_limit, now_ns, &times))
-		gr_error("node %s holds another state at frame %" PRIu64 ": ours %016" PRIx64
-			 ", its %016" PRIx64 "; it gets a snapshot (%" PRIu64 " since the last line)",
-			 node_name(m, event->node), event->frame, event->ours, event->theirs, times);
-}
-
-static void note_way(struct master *m, const struct fdp_master_event *event, int64_t now_ns)
-{
-	const struct layout_network *network = &m->params.layout->network;
-	uint64_t times;
-
-	m->deaf = event->way == FDP_WAY_GROUP ? -1 : event->node;
-	if (!gr_log_limit(&m->way_limit, now_ns, &times))
-		return;
-	if (event->way == FDP_WAY_GROUP)
-		gr_notice("all nodes hear %s: frames go by multicast", network->group);
-	else
-		gr_warning("node %s does not hear %s: frames go to each node by itself (a switch that "
-			   "snoops IGMP needs a querier; \"ip maddr\" on the node shows whether it has joined; "
-			   "%" PRIu64 " changes since the last line)", node_name(m, event->node),
-			   network->group, times);
-}
-
-static void on_event(void *ctx, const struct fdp_master_event *event)
-{
-	struct master *m = ctx;
-	int64_t now_ns = gr_clock_now(&gr_clock_monotonic);
-	uint64_t times;
-
-	recorder_event(m->recorder, now_ns, event);
-	switch (event->kind) {
-	case FDP_MASTER_JOINED:
-		/* Counts from the next frame on. */
-		m->joined++;
-		m->members |= UINT64_C(1) << event->node;
-		m->restart_light = true;
-		gr_notice("node %s joined: %zu of %zu", node_name(m, event->node), members(m),
-			  m->params.layout->node_count);
-		break;
-	case FDP_MASTER_LEFT:
-		node_gone(m, event->node);
-		gr_notice("node %s left: %s", node_name(m, event->node),
-			  event->reason ? event->reason : "no reason given");
-		break;
-	case FDP_MASTER_REFUSED: node_refused(m, event, now_ns); break;
-	case FDP_MASTER_LATE:
-		m->late++;
-		m->behind |= UINT64_C(1) << event->node;
-		if (gr_log_limit(&m->late_limit, now_ns, &times))
-			gr_warning("node %s was late for frame %" PRIu64 " (%" PRIu64 " since the last line)",
-				   node_name(m, event->node), event->frame, times);
-		break;
-	case FDP_MASTER_EVICTED:
-		m->evicted++;
-		node_gone(m, event->node);
-		master_note_evicted(m, event);
-		break;
-	case FDP_MASTER_PACE: master_note_pace(m, event, now_ns); break;
-	case FDP_MASTER_MISMATCH: node_mismatch(m, event, now_ns); break;
-	case FDP_MASTER_WAY: note_way(m, event, now_ns); break;
-	case FDP_MASTER_SWAP:
-		m->swap_ns = now_ns;
-		recorder_swap(m->recorder, now_ns, event->frame, event->swap_ns);
-		frame_stats_swap_sent(&m->stats, event->frame, event->swap_ns != 0, now_ns);
-		notify_feed(&m->notify, now_ns);
-		break;
-	}
 }
 
 static void on_report(void *ctx, unsigned node, unsigned kind, const struct fdp_report *report)
@@ -223,19 +121,32 @@ static bool next_frame(struct master *m, int64_t now_ns, struct frame_next *next
 	return false;
 }
 
+/* What is shown for the first time after a takeover is shown as it was: the light starts anew after it. */
+static bool hold_light(struct master *m)
+{
+	const bool hold = m->took_over && m->restart_light;
+
+	m->took_over = false;
+	if (hold)
+		m->restart_light = false;
+	return hold;
+}
+
 static void begin_frame(struct master *m, int64_t now_ns)
 {
 	struct frame_next next;
 	uint64_t previous_hash, live;
+	bool held;
 	int r;
 
 	look_for_caught_up(m, now_ns);
+	held = hold_light(m);
 	if (!next_frame(m, now_ns, &next))
 		return;
 	if (next.restarts_light)
 		m->light_restart_ns = now_ns;
 	fdp_master_set_deadline(m->fdp, frame_deadline(m, next.restarts_light));
-	m->restart_light = false;
+	m->restart_light = held;
 	previous_hash = fdp_master_hash(m->fdp);
 	r = fdp_master_begin(m->fdp, m->state, next.frame, now_ns);
 	live = fdp_master_every_frame(m->fdp);
@@ -257,9 +168,9 @@ static void begin_frame(struct master *m, int64_t now_ns)
 
 static bool may_begin(struct master *m)
 {
-	size_t live = members(m);
+	size_t live = master_members(m);
 
-	if (!fdp_master_idle(m->fdp) || m->finish_ns != 0 || live == 0)
+	if (!master_rules(m) || !fdp_master_idle(m->fdp) || m->finish_ns != 0 || live == 0)
 		return false;
 	if (!m->started && live < m->params.expect)
 		return false;
@@ -280,6 +191,8 @@ static int64_t frame_due(const struct master *m)
 {
 	const int64_t due_ns = m->source->ops->due ? m->source->ops->due(m->source) : FRAME_SOURCE_GRID;
 
+	if (m->took_over)
+		return fdp_standby_begin_at(m->standby);
 	if (due_ns != FRAME_SOURCE_GRID)
 		return due_ns;
 	if (!m->params.frame_clock || m->frame == 0)
@@ -297,7 +210,7 @@ static bool frames_are_over(const struct master *m)
 /* Begins to end once the last frame has swapped: waits a little for the reports of it. */
 static void look_for_end(struct master *m, int64_t now_ns)
 {
-	if (!frames_are_over(m) || !fdp_master_idle(m->fdp))
+	if (!master_rules(m) || !frames_are_over(m) || !fdp_master_idle(m->fdp))
 		return;
 	if (m->finish_ns == 0)
 		m->finish_ns = now_ns + m->params.layout->rates.barrier_deadline_ns + GR_NS_PER_S;
@@ -310,6 +223,7 @@ static void advance(struct master *m)
 {
 	int64_t now_ns = gr_clock_now(&gr_clock_monotonic), frame_ns = LOOP_NEVER;
 
+	master_role_tick(m, now_ns);
 	net_flush(m->net);
 	look_for_end(m, now_ns);
 	if (may_begin(m)) {
@@ -322,7 +236,7 @@ static void advance(struct master *m)
 	if (m->finish_ns != 0)
 		frame_ns = m->finish_ns;
 	loop_timer_set(m->loop, m->frame_timer, frame_ns);
-	loop_timer_set(m->loop, m->tick_timer, fdp_master_next(m->fdp));
+	loop_timer_set(m->loop, m->tick_timer, master_role_next(m));
 }
 
 static void note_dropped(struct master *m, int result, const uint8_t *bytes, size_t len,
@@ -334,7 +248,7 @@ static void note_dropped(struct master *m, int result, const uint8_t *bytes, siz
 	char name[LAYOUT_NAME_MAX + 8];
 
 	if (dropped.peer >= 0) {
-		snprintf(name, sizeof name, "node %s", node_name(m, dropped.peer));
+		snprintf(name, sizeof name, "node %s", master_node_name(m, dropped.peer));
 		dropped.name = name;
 	}
 	dropped_add(&m->bad, result, &dropped, now_ns);
@@ -347,8 +261,17 @@ static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	int64_t now_ns = gr_clock_now(&gr_clock_monotonic);
 	struct fdp_peer_status peer;
 	bool fresh;
-	int node;
+	int node, r;
 
+	if (fdp_standby_is_its(bytes, len)) {
+		r = master_role_receive(m, bytes, len, arrived_ns, now_ns);
+		if (r < 0)
+			note_dropped(m, r, bytes, len, from, now_ns);
+		return;
+	}
+	/* Nodes ask all masters. */
+	if (fdp_standby_role(m->standby) == FDP_ROLE_FOLLOWS)
+		return;
 	m->from = from;
 	m->heard_ns = now_ns;
 	fdp_master_arrived(m->fdp, arrived_ns);
@@ -361,6 +284,8 @@ static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	/* Whoever sends a recording again must not have what is for the node. */
 	if (fresh)
 		net_learn(m->net, node, from);
+	if (node >= (int)m->params.layout->node_count)
+		return; /* a master that follows */
 	fdp_master_peer(m->fdp, (size_t)node, &peer);
 	recorder_shown(m->recorder, now_ns, (unsigned)node, &peer);
 	frame_stats_applied(&m->stats, (unsigned)node, peer.acked, now_ns);
@@ -393,7 +318,8 @@ static void on_tick(void *ctx, int64_t now_ns)
 	(void)now_ns;
 	/* Nobody is late whose word has arrived. */
 	receive(m);
-	fdp_master_tick(m->fdp, gr_clock_now(&gr_clock_monotonic));
+	if (fdp_standby_role(m->standby) != FDP_ROLE_FOLLOWS)
+		fdp_master_tick(m->fdp, gr_clock_now(&gr_clock_monotonic));
 	advance(m);
 }
 
@@ -420,19 +346,22 @@ static void log_send_failures(struct master *m, int64_t now_ns)
 static void on_second(void *ctx, int64_t now_ns)
 {
 	struct master *m = ctx;
-	size_t live = members(m), all = m->params.layout->node_count;
+	size_t live = master_members(m), all = m->params.layout->node_count;
 
 	/* Waiting for nodes, or for a person's step, is healthy; else a room must show frames. */
-	if (live == 0 || !m->started || frame_due(m) == LOOP_NEVER)
+	if (!master_rules(m) || live == 0 || !m->started || frame_due(m) == LOOP_NEVER)
 		notify_feed(&m->notify, now_ns);
-	if (m->frame == m->logged_frame)
+	if (!master_rules(m))
+		master_role_status(m, now_ns);
+	else if (m->frame == m->logged_frame)
 		notify_status("waiting for nodes: %zu of %zu live", live, all);
 	else
 		notify_status("frame %" PRIu64 ", %" PRIu64 " in the last second, %zu of %zu nodes",
 			      m->frame, m->frame - m->logged_frame, live, all);
 	m->logged_frame = m->frame;
 	log_send_failures(m, now_ns);
-	master_save(m);
+	if (master_rules(m))
+		master_save(m);
 	if (m->recorder)
 		recorder_watch(m->recorder);
 	loop_timer_set(m->loop, m->second_timer, now_ns + GR_NS_PER_S);
@@ -453,13 +382,16 @@ static int create_protocol(struct master *m)
 		.pace = master_pace_params(layout),
 		.multicast = net_has_group(m->net),
 		.probe_group = net_has_group(m->net) && layout->network.cast == LAYOUT_AUTO,
+		.masters = (unsigned)net_masters(layout),
+		.index = m->params.index,
+		.heartbeat_ns = master_takeover_ns(layout) / 8,
 		.parity = master_parity(layout->network.parity),
 		.swap = master_swap(layout->swap.mode),
 		.swap_lead_most_ns = llrint((double)layout->swap.lead_most * (double)m->period_ns),
 		.share_bytes = m->params.scene->gi.share == SCENE_SHARE_CLUSTER ? FDP_SHARE_MAX : 0,
 	};
 	struct fdp_master_ops ops = {
-		.send = send_datagram, .event = on_event, .report = on_report, .ctx = m
+		.send = send_datagram, .event = master_on_event, .report = on_report, .ctx = m
 	};
 	int r;
 
@@ -469,7 +401,7 @@ static int create_protocol(struct master *m)
 	params.contents = m->params.contents;
 	r = fdp_master_create(&m->fdp, &params, &ops);
 	sodium_memzero(params.key, sizeof params.key);
-	return r;
+	return r < 0 ? r : master_role_create(m);
 }
 
 int master_create(struct master **out, struct loop *loop, struct net *net,
@@ -489,9 +421,7 @@ int master_create(struct master **out, struct loop *loop, struct net *net,
 	if (params->live)
 		params->live->trackers->tap = (struct trackers_tap){ on_sample, m };
 	m->period_ns = llrint(1e9 / (double)params->layout->rates.frame_hz);
-	do
-		randombytes_buf(&m->session, sizeof m->session);
-	while (m->session == 0);
+	m->session = fdp_session_after(0);
 	notify_init(&m->notify);
 	r = param_state_create(&m->state);
 	if (r >= 0)
@@ -539,8 +469,10 @@ void master_leave(struct master *master)
 	if (master->left)
 		return;
 	master->left = true;
-	master_save(master);
-	fdp_master_leave(master->fdp, gr_clock_now(&gr_clock_monotonic));
+	if (master_rules(master))
+		master_save(master);
+	if (fdp_standby_role(master->standby) != FDP_ROLE_FOLLOWS)
+		fdp_master_leave(master->fdp, gr_clock_now(&gr_clock_monotonic));
 	net_flush(master->net);
 	dropped_finish(&master->bad);
 }
@@ -554,6 +486,7 @@ void master_destroy(struct master **master)
 		return;
 	net_fds(m->net, fds);
 	loop_remove(m->loop, fds[0]);
+	fdp_standby_destroy(&m->standby);
 	fdp_master_destroy(&m->fdp);
 	param_state_destroy(&m->state);
 	sodium_memzero(m->params.key, sizeof m->params.key);

@@ -22,6 +22,8 @@
 #include "daemon/replay_source.h"
 #include "daemon/socket.h"
 #include "protocol/master.h"
+#include "protocol/message.h"
+#include "protocol/standby.h"
 
 #include "base/log.h"
 
@@ -37,6 +39,8 @@ struct master_params {
 	uint64_t frames; /* end after so many; 0: for ever */
 	unsigned expect; /* nodes that must be live before the first frame, at least 1 */
 	bool frame_clock;
+	unsigned index; /* of the layout's masters, which this is */
+	bool standby;   /* follows at its start, and again when there is a higher epoch */
 	/* Where frames come from: one of these, the other NULL. Borrowed. */
 	struct live_source *live;
 	struct replay_source *replay;
@@ -51,6 +55,7 @@ struct master {
 	int64_t heard_ns;               /* when it came */
 	struct frame_source *source;
 	struct fdp_master *fdp;
+	struct fdp_standby *standby; /* who rules */
 	struct param_state *state;
 	struct notify notify;
 	struct recorder *recorder; /* NULL: nothing can be recorded */
@@ -61,6 +66,8 @@ struct master {
 	uint64_t session, frame; /* frame: the last begun */
 	int64_t start_ns, next_frame_ns;
 	int64_t period_ns;
+	bool took_over;     /* and has begun no frame since */
+	int status;         /* enum gr_exit, when the loop stops */
 	bool started;       /* `expect` nodes were there */
 	bool restart_light; /* at the next frame */
 	int64_t swap_ns;          /* when SWAP was sent last */
@@ -72,11 +79,12 @@ struct master {
 
 	int tick_timer, frame_timer, second_timer;
 	uint64_t late, evicted, refused, joined;
+	uint64_t takeovers, yielded;
 	uint64_t logged_frame;
 	int deaf; /* node that keeps the room from multicast (cast = "auto"); -1: none */
 	struct dropped bad;
 	struct gr_log_limit refused_limit[FDP_MAX_NODES], range_limit, late_limit, way_limit;
-	struct gr_log_limit mismatch_limit, send_limit;
+	struct gr_log_limit mismatch_limit, send_limit, role_limit;
 	uint64_t seen_send_failed;
 };
 

@@ -106,6 +106,55 @@ static int load(struct opened *o, const struct master_options *options)
 	return r;
 }
 
+/* Which of the layout's masters is meant, by address, or address and port. */
+static int find_master(const struct layout *layout, const char *wanted)
+{
+	char text[NET_ADDRESS_TEXT];
+	struct net_address address;
+
+	for (size_t i = 0; i < net_masters(layout); i++) {
+		const char *plain = i ? layout->standby[i - 1].address : layout->network.master_address;
+
+		if (net_master_address(layout, i, &address) < 0)
+			continue;
+		net_address_text(&address, text);
+		if (!strcmp(wanted, text) || !strcmp(wanted, plain))
+			return (int)i;
+	}
+	return -1;
+}
+
+/* A standby is the first one of this machine, or else the first master that comes back as one. */
+static int own_master(const struct layout *layout, bool standby)
+{
+	struct net_address address;
+
+	for (size_t i = 1; standby && i < net_masters(layout); i++)
+		if (net_master_address(layout, i, &address) == GR_OK && net_is_ours(&address))
+			return (int)i;
+	return 0;
+}
+
+static int choose_master(const struct opened *o, const struct master_options *options, unsigned *out)
+{
+	const struct layout *layout = o->files.layout;
+	int index;
+
+	if (options->standby && !layout->standby_count) {
+		gr_error("--standby: %s has no standby; add standby = ( { address = \"...\"; } )", layout->path);
+		return GR_ERR_CONFIG;
+	}
+	index = options->address ? find_master(layout, options->address) :
+				   own_master(layout, options->standby);
+	if (index < 0) {
+		gr_error("--address %s: neither network.master_address nor a standby of %s", options->address,
+			 layout->path);
+		return GR_ERR_CONFIG;
+	}
+	*out = (unsigned)index;
+	return GR_OK;
+}
+
 static void fill_params(struct master_params *params, struct opened *o,
 			const struct master_options *options)
 {
@@ -118,6 +167,7 @@ static void fill_params(struct master_params *params, struct opened *o,
 		.expect = options->wait_all ? (unsigned)o->files.layout->node_count :
 					      (unsigned)options->expect,
 		.frame_clock = options->frame_clock,
+		.standby = options->standby,
 		.live = o->replay ? NULL : &o->live,
 		.replay = o->replay,
 	};
@@ -175,11 +225,15 @@ static int open_all(struct opened *o, const struct master_options *options)
 {
 	struct master_params params;
 	const char *path = control_path(o, options);
-	int r = net_open_master(&o->net, o->files.layout);
+	unsigned index = 0;
+	int r = choose_master(o, options, &index);
 
+	if (r >= 0)
+		r = net_open_master(&o->net, o->files.layout, index);
 	if (r < 0)
 		return r;
 	fill_params(&params, o, options);
+	params.index = index;
 	r = master_create(&o->master, o->loop, o->net, &params);
 	if (r >= 0 && o->files.layout->test.faults)
 		r = faults_create(&o->faults, o->loop, net_datagram_max(&o->files.layout->network), 0);
@@ -219,7 +273,7 @@ static int run(struct opened *o)
 	}
 	if (loop_signal(o->loop))
 		gr_notice("ends: %s", strsignal(loop_signal(o->loop)));
-	return GR_EXIT_OK;
+	return o->master->status;
 }
 
 static int report(const struct master *master, const char *path)

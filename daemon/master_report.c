@@ -1,4 +1,4 @@
-#include "daemon/master.h"
+#include "daemon/master_private.h"
 
 #include "base/clock.h"
 #include "base/result.h"
@@ -273,6 +273,7 @@ int master_write_json(const struct master *m, int64_t now_ns, char *text, size_t
 	json_string(&json, "layout", m->params.layout->name);
 	json_string(&json, "scene", m->params.scene->name);
 	json_hash(&json, "session", m->session);
+	master_role_write_json(m, &json, now_ns);
 	json_f64(&json, "uptime_s", (double)(now_ns - m->start_ns) * 1e-9);
 	json_f64(&json, "frame_hz", (double)m->params.layout->rates.frame_hz);
 	json_bool(&json, "frame_clock", m->params.frame_clock);
@@ -310,6 +311,10 @@ static void answer_set(struct master *m, char *const *words, int count, char *an
 		control_refuse(answer, size, "write: set NAME VALUE...");
 		return;
 	}
+	if (!master_rules(m)) {
+		control_refuse(answer, size, "this master stands by; ask the active one");
+		return;
+	}
 	if (!m->params.live) {
 		control_refuse(answer, size, "a recording is replayed: its settings are what they were");
 		return;
@@ -332,6 +337,8 @@ static void answer_record(struct master *m, char *const *words, int count, char 
 
 	if (count == 1)
 		r = GR_OK;
+	else if (!strcmp(words[1], "start") && count == 3 && !master_rules(m))
+		snprintf(why, sizeof why, "this master stands by; ask the active one");
 	else if (!strcmp(words[1], "start") && count == 3)
 		r = master_record(m, words[2], why, sizeof why);
 	else if (!strcmp(words[1], "stop") && count == 2 && m->recorder)

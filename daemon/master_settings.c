@@ -165,6 +165,15 @@ int master_settings_set(struct master_settings *settings, const struct scene_fil
 	return GR_ERR_RANGE;
 }
 
+void master_settings_read(struct master_settings *settings, const struct param_state *params)
+{
+	for (size_t i = 0; i < SIMPLE_COUNT; i++)
+		memcpy((char *)settings + simple[i].offset, param_get(params, simple[i].id), 4);
+	memcpy(&settings->lamp_on, param_get(params, PARAM_LAMP_ON), sizeof settings->lamp_on);
+	memcpy(settings->lamp_intensity, param_get(params, PARAM_LAMP_INTENSITY),
+	       sizeof settings->lamp_intensity);
+}
+
 int master_settings_apply(const struct master_settings *settings, struct param_state *params,
 			  uint64_t frame, const char **refused)
 {

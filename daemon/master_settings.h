@@ -29,6 +29,8 @@ void master_settings_init(struct master_settings *settings, const struct scene_f
 int master_settings_set(struct master_settings *settings, const struct scene_file *scene,
 			char *const *words, int count, char *why, size_t size);
 
+/* From the parameters of a frame. */
+void master_settings_read(struct master_settings *settings, const struct param_state *params);
 /* Into the parameters, for `frame`; GR_ERR_RANGE names the parameter in *refused. */
 int master_settings_apply(const struct master_settings *settings, struct param_state *params,
 			  uint64_t frame, const char **refused);

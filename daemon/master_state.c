@@ -17,6 +17,19 @@ void master_state_init(struct master_state *state, const struct layout *layout,
 	state->T_scene_room = scene->room;
 }
 
+void master_state_adopt(struct master_state *state, const struct param_state *params)
+{
+	struct gr_pose room;
+
+	memcpy(room.p, param_f32(params, PARAM_ROOM_POSITION), sizeof room.p);
+	memcpy(room.q, param_f32(params, PARAM_ROOM_ROTATION), sizeof room.q);
+	if (gr_pose_valid(&room)) /* else it was never set */
+		state->T_scene_room = room;
+	master_settings_read(&state->settings, params);
+	state->buttons = *param_u32(params, PARAM_WAND_BUTTONS);
+	memcpy(&state->epoch, param_get(params, PARAM_GI_EPOCH), sizeof state->epoch);
+}
+
 void master_state_start_input(const struct master_state *state, struct master_input *input)
 {
 	*input = (struct master_input){

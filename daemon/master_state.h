@@ -47,6 +47,8 @@ struct master_state {
 /* layout and scene must outlive the state. */
 void master_state_init(struct master_state *state, const struct layout *layout,
 		       const struct scene_file *scene);
+/* Goes on from the parameters of another master's frame. */
+void master_state_adopt(struct master_state *state, const struct param_state *params);
 /* The input before any tracker speaks. */
 void master_state_start_input(const struct master_state *state, struct master_input *input);
 

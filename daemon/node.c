@@ -7,6 +7,7 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <sodium.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,11 +22,11 @@
 #define WINDOW_NS (100 * GR_NS_PER_MS) /* a window is answered while no frame comes */
 #define GPU_SLICE_NS GR_NS_PER_MS /* the longest that the socket waits for the GPU */
 
-static void send_datagram(void *ctx, const uint8_t *bytes, size_t len)
+static void send_datagram(void *ctx, int to, const uint8_t *bytes, size_t len)
 {
 	struct node *n = ctx;
 
-	faults_send(n->faults, n->net, 0, 1, bytes, len);
+	faults_send(n->faults, n->net, to, net_masters(n->params.layout), bytes, len);
 }
 
 static void apply_frame(struct node *n, uint64_t frame, int64_t now_ns)
@@ -133,9 +134,13 @@ static void on_event(void *ctx, const struct fdp_node_event *event)
 	case FDP_NODE_JOINED:
 		n->counts.joined++;
 		n->master_gone = n->orphan = false;
-		n->lost_ns = 0;
+		n->lost_ns = n->left_ns = 0;
 		node_swap_begin(&n->swap);
-		gr_notice("joined the master");
+		if (n->params.layout->standby_count)
+			gr_notice("joined master %u of %zu, epoch %" PRIu64, fdp_node_master(n->fdp),
+				  net_masters(n->params.layout), fdp_node_session(n->fdp) >> FDP_EPOCH_SHIFT);
+		else
+			gr_notice("joined the master");
 		break;
 	case FDP_NODE_FRAME: apply_frame(n, event->frame, now_ns); break;
 	case FDP_NODE_SWAP: told_to_swap(n, event->frame, event->at_ns); break;
@@ -152,7 +157,9 @@ static void on_event(void *ctx, const struct fdp_node_event *event)
 		break;
 	case FDP_NODE_MASTER_LEFT:
 		n->master_gone = true;
-		n->orphan = !n->params.once;
+		/* Where another stands by, the wall is given time before it shows that nobody is there. */
+		n->orphan = !n->params.once && !n->params.layout->standby_count;
+		n->left_ns = n->params.layout->standby_count ? now_ns : 0;
 		gr_notice("the master left%s", n->params.once ? "" : ": waiting for the next");
 		if (n->params.once)
 			loop_stop(n->loop);
@@ -178,11 +185,12 @@ static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	fdp_node_arrived(n->fdp, arrived_ns);
 	r = fdp_node_receive(n->fdp, bytes, len, now_ns);
 
-	/* A master's words before it has taken us are none of ours, and nothing bad. */
-	if (r >= 0 || (r == GR_ERR_MISMATCH && fdp_node_status(n->fdp) != FDP_NODE_LIVE))
+	/* A master's words before it has taken us, or another's, are none of ours, and nothing bad. */
+	if (r >= 0 || (r == GR_ERR_MISMATCH && (fdp_node_status(n->fdp) != FDP_NODE_LIVE ||
+						n->params.layout->standby_count)))
 		return;
 	dropped.peer = net_peer(n->net, from);
-	dropped.name = dropped.peer >= 0 ? "the master" : NULL;
+	dropped.name = dropped.peer > 0 ? "a standby" : dropped.peer == 0 ? "the master" : NULL;
 	dropped_add(&n->bad, r, &dropped, now_ns);
 }
 
@@ -249,6 +257,15 @@ static void look_for_end(struct node *n, int64_t now_ns)
 	loop_stop(n->loop);
 }
 
+/* Nobody took the place of a master that left. */
+static void look_for_successor(struct node *n, int64_t now_ns)
+{
+	if (n->left_ns == 0 || now_ns - n->left_ns < GR_NS_PER_S)
+		return;
+	n->left_ns = 0;
+	n->orphan = true;
+}
+
 static void on_second(void *ctx, int64_t now_ns)
 {
 	struct node *n = ctx;
@@ -265,6 +282,7 @@ static void on_second(void *ctx, int64_t now_ns)
 	n->logged_swapped = n->counts.swapped;
 	log_send_failures(n, now_ns);
 	look_for_end(n, now_ns);
+	look_for_successor(n, now_ns);
 	loop_timer_set(n->loop, n->second_timer, now_ns + GR_NS_PER_S);
 }
 
@@ -387,6 +405,17 @@ int node_run(struct node *node)
 	return node->status;
 }
 
+/*
+ * Before the standby calls, so that its first call is answered: it takes a master for
+ * dead that is silent for half of takeover_frames.
+ */
+static int64_t call_after(const struct layout *layout)
+{
+	const double half = layout->rates.takeover_frames * 0.5;
+
+	return layout->standby_count ? llrint((half - 1) * 1e9 / (double)layout->rates.frame_hz) : 0;
+}
+
 static int create_protocol(struct node *n)
 {
 	const struct layout *layout = n->params.layout;
@@ -395,6 +424,8 @@ static int create_protocol(struct node *n)
 		.name = layout->nodes[n->params.index].name,
 		.datagram_max = net_datagram_max(&layout->network),
 		.silence_ns = SILENCE_NS,
+		.masters = (unsigned)net_masters(layout),
+		.call_ns = call_after(layout),
 		.share_bytes = n->share.room,
 	};
 	struct fdp_node_ops ops = { send_datagram, on_event, n };

@@ -80,6 +80,7 @@ struct node {
 	uint64_t report;          /* frame of that swap */
 	bool master_gone;         /* left, refused, or lost: nothing will come */
 	int64_t lost_ns;          /* since when nothing is heard from it; 0: it is, or none was there */
+	int64_t left_ns;          /* when the master left, while another may come in its place; 0: not so */
 	bool orphan;              /* the wall is to show what it shows without a master */
 	int status;               /* enum gr_exit, when the loop stops */
 

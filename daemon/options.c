@@ -169,6 +169,8 @@ static const struct option_spec master_specs[] = {
 	{ "recording", OPTION_INT, AT(master_options, recording), "N", "replay the Nth of the file [1]", 1, 1000000, NULL, NULL },
 	{ "other-layout", OPTION_FLAG, AT(master_options, other_layout), NULL, "the recording may be of another layout", 0, 0, NULL, NULL },
 	{ "state", OPTION_TEXT, AT(master_options, state), "FILE", "go on from the state left there, and leave it there every second", 0, 0, NULL, NULL },
+	{ "standby", OPTION_FLAG, AT(master_options, standby), NULL, "follow the room's master, and take over when it is silent", 0, 0, NULL, NULL },
+	{ "address", OPTION_TEXT, AT(master_options, address), "ADDRESS", "which of the layout's masters this is, or ADDRESS:PORT; with --standby the first standby of this machine, else master_address", 0, 0, NULL, NULL },
 	{ "frames", OPTION_INT, AT(master_options, frames), "N", "end after N frames", 1, INT_MAX, NULL, NULL },
 	{ "frame-clock", OPTION_FLAG, AT(master_options, frame_clock), NULL, "frame N is at N / frame_hz seconds; as fast as the barrier allows", 0, 0, NULL, NULL },
 	{ "wait-all", OPTION_FLAG, AT(master_options, wait_all), NULL, "no frame before every node of the layout is there", 0, 0, NULL, NULL },
@@ -208,6 +210,12 @@ enum options_outcome master_options_parse(struct master_options *options, int ar
 	     options->recording != 1)) {
 		gr_error("--speed, --step, --from, --recording and --other-layout say how to replay; "
 			 "--replay FILE is missing");
+		return OPTIONS_WRONG;
+	}
+	if (outcome == OPTIONS_RUN && options->standby && (options->replay || options->record)) {
+		gr_error("--standby: has nothing to %s before it takes over; %s",
+			 options->replay ? "replay" : "record",
+			 options->replay ? "a replay is one master's" : "start a recording then (grotto record)");
 		return OPTIONS_WRONG;
 	}
 	if (outcome == OPTIONS_RUN && options->speed == 0)

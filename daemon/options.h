@@ -55,7 +55,8 @@ struct master_options {
 	_Bool step, other_layout;
 	const char *state;   /* file in which the room's state is left for the next master, or NULL */
 	int frames;          /* 0: for ever */
-	_Bool frame_clock, wait_all;
+	_Bool frame_clock, wait_all, standby;
+	const char *address; /* which of the layout's masters, or NULL: see master_main.c */
 	int expect;
 };
 

@@ -33,8 +33,8 @@ struct net {
 	int group_fd; /* node: bound to the group's port, or -1 */
 	bool has_group;
 	struct net_address group;
-	struct net_address peers[LAYOUT_MAX_NODES]; /* master: nodes; node: [0] the master */
-	size_t peer_count;
+	struct net_address peers[LAYOUT_MAX_NODES]; /* master: nodes, then masters; node: masters */
+	size_t peer_count, all_count; /* all: of NET_TO_ALL, the first */
 	size_t datagram_max;
 	uint64_t oversized, too_long; /* arrived; asked to be sent */
 	struct send_queue *out;
@@ -278,7 +278,47 @@ static int without_group(struct net *net, const struct layout_network *network, 
 	return GR_OK;
 }
 
-int net_open_master(struct net **out, const struct layout *layout)
+size_t net_masters(const struct layout *layout)
+{
+	return 1 + layout->standby_count;
+}
+
+int net_master_address(const struct layout *layout, size_t index, struct net_address *out)
+{
+	if (index == 0)
+		return parse_or_say(layout->network.master_address, layout->network.master_port, out);
+	return parse_or_say(layout->standby[index - 1].address, layout->standby[index - 1].port, out);
+}
+
+bool net_is_ours(const struct net_address *address)
+{
+	struct net_address any = *address;
+	int fd = socket(address->sa.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+	bool ours;
+
+	/* Another port than its own, which may be taken. */
+	if (any.sa.ss_family == AF_INET6)
+		((struct sockaddr_in6 *)(void *)&any.sa)->sin6_port = 0;
+	else
+		((struct sockaddr_in *)(void *)&any.sa)->sin_port = 0;
+	ours = fd >= 0 && bind(fd, (const struct sockaddr *)&any.sa, any.len) == 0;
+	if (fd >= 0)
+		close(fd);
+	return ours;
+}
+
+/* The layout's masters, from `at` on; where there is one alone a master has no peer but nodes. */
+static int add_masters(struct net *net, const struct layout *layout, size_t at)
+{
+	int r = GR_OK;
+
+	for (size_t i = 0; r == GR_OK && i < net_masters(layout); i++)
+		r = net_master_address(layout, i, &net->peers[at + i]);
+	net->peer_count = at + net_masters(layout);
+	return r;
+}
+
+int net_open_master(struct net **out, const struct layout *layout, size_t index)
 {
 	const struct layout_network *network = &layout->network;
 	struct net_address own;
@@ -286,10 +326,13 @@ int net_open_master(struct net **out, const struct layout *layout)
 
 	if (r < 0)
 		return r;
-	r = parse_or_say(network->master_address, network->master_port, &own);
-	(*out)->peer_count = layout->node_count < LAYOUT_MAX_NODES ? layout->node_count : LAYOUT_MAX_NODES;
-	for (size_t i = 0; r == GR_OK && i < (*out)->peer_count; i++)
+	r = net_master_address(layout, index, &own);
+	(*out)->peer_count = (*out)->all_count =
+		layout->node_count < LAYOUT_MAX_NODES ? layout->node_count : LAYOUT_MAX_NODES;
+	for (size_t i = 0; r == GR_OK && i < (*out)->all_count; i++)
 		r = parse_or_say(layout->nodes[i].address, layout->nodes[i].port, &(*out)->peers[i]);
+	if (r == GR_OK && layout->standby_count)
+		r = add_masters(*out, layout, (*out)->all_count);
 	if (r == GR_OK && ((*out)->fd = open_bound(&own, false)) < 0)
 		r = GR_ERR_IO;
 	if (r == GR_OK && (*out)->has_group)
@@ -307,8 +350,8 @@ int net_open_node(struct net **out, const struct layout *layout, size_t index)
 
 	if (r < 0)
 		return r;
-	(*out)->peer_count = 1;
-	r = parse_or_say(network->master_address, network->master_port, &(*out)->peers[0]);
+	r = add_masters(*out, layout, 0);
+	(*out)->all_count = (*out)->peer_count;
 	if (r == GR_OK)
 		r = parse_or_say(layout->nodes[index].address, layout->nodes[index].port, &own);
 	if (r == GR_OK && ((*out)->fd = open_bound(&own, false)) < 0)
@@ -392,7 +435,7 @@ void net_send(struct net *net, int to, const uint8_t *bytes, size_t len)
 	} else if (to == NET_TO_GROUP && net->has_group) {
 		queue(net, NET_GROUP, &net->group, bytes, len);
 	} else if (to == NET_TO_ALL) {
-		for (size_t i = 0; i < net->peer_count; i++)
+		for (size_t i = 0; i < net->all_count; i++)
 			queue(net, (int)i, &net->peers[i], bytes, len);
 	}
 }

@@ -3,6 +3,8 @@
  * master's fans out to all nodes (unicast, one send for all by multicast or
  * broadcast), a node's speaks to its master.
  *
+ * A room with standbys has several masters: the first is master_address, the others follow.
+ *
  * Sends are queued and leave in batches (send_queue.h); datagrams arrive in
  * batches (recvmmsg) into fixed buffers. Nothing is allocated after opening.
  * Lost sends are counted, not retried: the protocol repairs.
@@ -37,8 +39,13 @@ struct net_stats {
 };
 
 struct net;
-/* The master's socket, on master_address:master_port. The log names what fails. */
-int net_open_master(struct net **out, const struct layout *layout);
+/* How many masters the layout has, and the address of one of them (0: master_address). */
+size_t net_masters(const struct layout *layout);
+int net_master_address(const struct layout *layout, size_t index, struct net_address *out);
+/* Whether an address is one of this machine. */
+bool net_is_ours(const struct net_address *address);
+/* The socket of master `index`, on its address and port. The log names what fails. */
+int net_open_master(struct net **out, const struct layout *layout, size_t index);
 /* Node `index`'s sockets: its own port, and the group's where there is one. */
 int net_open_node(struct net **out, const struct layout *layout, size_t index);
 void net_close(struct net **net);
@@ -50,15 +57,15 @@ void net_stats(const struct net *net, struct net_stats *out);
 /* Whether there is a group: as the layout says, and with cast = "auto" where it can be opened. */
 bool net_has_group(const struct net *net);
 /*
- * Master: queues a datagram to node `to`, to each node (NET_TO_ALL), or once to
+ * Master: queues a datagram to node `to` (from the number of nodes on: to a master), to each node (NET_TO_ALL), or once to
  * the group (NET_TO_GROUP; nothing where there is none).
- * Node: `to` is 0, its master. net_flush sends the queue.
+ * Node: `to` is a master's index, or NET_TO_ALL of them. net_flush sends the queue.
  */
 void net_send(struct net *net, int to, const uint8_t *bytes, size_t len);
 void net_flush(struct net *net);
 /* Master: queues an answer to where a datagram came from. */
 void net_send_to(struct net *net, const struct net_address *to, const uint8_t *bytes, size_t len);
-/* Which node (on a node: 0, the master) speaks from there, as the layout says; -1: nobody. */
+/* Which node, or from their number on master, (on a node: which master) speaks from there, as the layout says; -1: nobody. */
 int net_peer(const struct net *net, const struct net_address *from);
 /* Master: node `node` was heard from there, and it was no recording. */
 void net_learn(struct net *net, int node, const struct net_address *from);

@@ -9,6 +9,7 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/loss.h \
 	protocol/master.c protocol/master.h protocol/master_private.h \
 	protocol/master_clock.c \
+	protocol/master_follow.c \
 	protocol/master_join.c \
 	protocol/master_pace.c \
 	protocol/master_parity.c \
@@ -19,6 +20,7 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/master_way.c \
 	protocol/message.c protocol/message.h \
 	protocol/node.c protocol/node.h protocol/node_private.h \
+	protocol/node_call.c \
 	protocol/node_clock.c \
 	protocol/node_frame.c \
 	protocol/node_share.c \
@@ -30,6 +32,7 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/peer.c protocol/peer.h \
 	protocol/replay.h \
 	protocol/share.c protocol/share.h \
+	protocol/standby.c protocol/standby.h \
 	protocol/trip.h \
 	protocol/session_keys.c protocol/session_keys.h \
 	protocol/wire.c protocol/wire.h

@@ -35,7 +35,7 @@ uint64_t fdp_master_mask(const struct fdp_master *m, bool (*test)(enum fdp_peer_
 {
 	uint64_t mask = 0;
 
-	for (size_t i = 0; i < m->params.node_count; i++)
+	for (size_t i = 0; i < fdp_master_peers(m); i++)
 		mask |= test(m->peers[i].state) ? BIT(i) : 0;
 	return mask;
 }
@@ -53,7 +53,10 @@ static int check_params(const struct fdp_master_params *p, const struct fdp_mast
 	    p->datagram_max < FDP_DATAGRAM_MIN || p->datagram_max > FDP_DATAGRAM_MAX ||
 	    (p->probe_group && !p->multicast) || p->deadline_ns <= 0 || p->probe_ns < 0 ||
 	    p->swap_lead_most_ns < 0 || !p->evict_frames || p->pace.policy > FDP_SLOW_HALF ||
-	    p->pace.limit_ns < 0 || p->pace.wait_most_ns < 0 || p->pace.rejoin_most_ns < 0 || !ops->send || !ops->event)
+	    p->pace.limit_ns < 0 || p->pace.wait_most_ns < 0 || p->pace.rejoin_most_ns < 0 ||
+	    p->masters > FDP_MAX_MASTERS || p->index >= (p->masters ? p->masters : 1) ||
+	    (p->masters > 1 && p->node_count + p->masters > FDP_MAX_NODES) || p->heartbeat_ns < 0 ||
+	    !ops->send || !ops->event)
 		return GR_ERR_RANGE;
 	for (size_t i = 0; i < p->node_count; i++)
 		if (!p->node_names[i] || !p->node_names[i][0] ||
@@ -63,7 +66,7 @@ static int check_params(const struct fdp_master_params *p, const struct fdp_mast
 }
 
 /* Frame 0 is the defaults: what a node can hold before the first frame begins. */
-static void remember_hash(struct fdp_master *m)
+void fdp_master_remember_hash(struct fdp_master *m)
 {
 	m->hash = param_state_hash(m->state, m->previous_hash);
 	m->hashes[m->frame % FDP_HASH_RING] = m->hash;
@@ -93,6 +96,8 @@ int fdp_master_create(struct fdp_master **out, const struct fdp_master_params *p
 	m->params.node_names = NULL; /* copied, so that the caller's may go */
 	for (size_t i = 0; i < params->node_count; i++)
 		strcpy(m->names[i], params->node_names[i]);
+	for (size_t i = params->node_count; i < fdp_master_peers(m); i++)
+		fdp_master_name((unsigned)(i - params->node_count), m->names[i]);
 	if (!m->params.probe_ns)
 		m->params.probe_ns = default_probe(params->deadline_ns);
 	m->usual_deadline_ns = params->deadline_ns;
@@ -111,12 +116,12 @@ int fdp_master_create(struct fdp_master **out, const struct fdp_master_params *p
 		.kinds = MASTER_KINDS | (params->share_bytes ? SHARE_KINDS : 0),
 		.any_version_kinds = 1u << FDP_JOIN,
 		.first_sender = 0,
-		.last_sender = (uint16_t)(params->node_count - 1),
+		.last_sender = (uint16_t)(fdp_master_peers(m) - 1),
 	};
 	m->out = (struct fdp_outbox){
 		.cluster_key = m->params.key,
 		.key = m->key_to_nodes,
-		.sender = FDP_SENDER_MASTER,
+		.sender = fdp_master_sender(params->index),
 		.session = params->session,
 		.datagram_max = params->datagram_max,
 		.fan_out = params->node_count,
@@ -134,9 +139,9 @@ int fdp_master_create(struct fdp_master **out, const struct fdp_master_params *p
 		fdp_master_destroy(&m);
 		return result;
 	}
-	for (size_t i = 0; i < params->node_count; i++)
+	for (size_t i = 0; i < fdp_master_peers(m); i++)
 		fdp_master_clock_forget(&m->peers[i]);
-	remember_hash(m);
+	fdp_master_remember_hash(m);
 	fdp_master_begin_repairs(m);
 	*out = m;
 	return GR_OK;
@@ -231,22 +236,26 @@ void fdp_master_write_state(struct fdp_master *m, struct fdp_letter *letter, enu
 	fdp_outbox_letter(&m->out, letter, kind, m->frame, at + (size_t)len);
 }
 
-/* Base: the oldest frame that every live node has acknowledged. */
+/* Base: the oldest frame that every live node, and every master that follows, has acknowledged. */
 static uint64_t common_base(const struct fdp_master *m, uint64_t live)
 {
 	uint64_t base = UINT64_MAX;
 
-	for (size_t i = 0; i < m->params.node_count; i++)
-		if (live & BIT(i) && m->peers[i].status.acked < base)
-			base = m->peers[i].status.acked;
-	return live ? base : 0;
+	for (size_t i = 0; i < fdp_master_peers(m); i++) {
+		const struct fdp_peer *peer = &m->peers[i];
+		const bool follows = peer->state == FDP_PEER_FOLLOWS && !peer->wants_snapshot;
+
+		if ((live & BIT(i) || follows) && peer->status.acked < base)
+			base = peer->status.acked;
+	}
+	return base == UINT64_MAX ? 0 : base;
 }
 
 /*
  * On a lossy wire the last fragment goes twice: it has no successor whose
  * arrival would show that it is missing. With parity any may be missing.
  */
-static void send_delta(struct fdp_master *m, int to)
+void fdp_master_send_delta(struct fdp_master *m, int to)
 {
 	fdp_outbox_post(&m->out, to, &m->delta);
 	if (fdp_master_twice(m) && !m->delta.parity)
@@ -257,12 +266,12 @@ static void send_delta_to(struct fdp_master *m, uint64_t live)
 {
 	if (m->group || count_bits(live) == m->params.node_count) {
 		/* To each of them the same datagram, signed once. */
-		send_delta(m, fdp_master_all(m));
+		fdp_master_send_delta(m, fdp_master_all(m));
 		return;
 	}
 	for (size_t i = 0; i < m->params.node_count; i++)
 		if (live & BIT(i))
-			send_delta(m, (int)i);
+			fdp_master_send_delta(m, (int)i);
 }
 
 /* A frame boundary: who has acknowledged its snapshot counts from here on. */
@@ -281,11 +290,11 @@ static void promote_joiners(struct fdp_master *m)
 
 static void refresh_snapshots(struct fdp_master *m, int64_t now_ns)
 {
-	for (unsigned i = 0; i < m->params.node_count; i++) {
+	for (unsigned i = 0; i < fdp_master_peers(m); i++) {
 		struct fdp_peer *peer = &m->peers[i];
 		const bool joiner = peer->state == FDP_PEER_JOINING && !peer->synced;
 
-		if ((joiner || (fdp_peer_counts(peer->state) && peer->wants_snapshot)) &&
+		if ((joiner || (fdp_peer_present(peer->state) && peer->wants_snapshot)) &&
 		    now_ns - peer->snapshot_ns >= m->params.probe_ns)
 			fdp_master_send_snapshot(m, i, now_ns);
 	}
@@ -305,7 +314,7 @@ int fdp_master_begin(struct fdp_master *m, const struct param_state *state, uint
 	m->previous_frame = m->frame;
 	m->previous_hash = m->hash;
 	m->frame = frame;
-	remember_hash(m);
+	fdp_master_remember_hash(m);
 	m->loss -= m->loss > 0;
 	m->asked_ns = now_ns;
 	fdp_master_measure_loss(m);
@@ -321,6 +330,8 @@ int fdp_master_begin(struct fdp_master *m, const struct param_state *state, uint
 		fdp_master_write_state(m, &m->delta, FDP_DELTA, common_base(m, live));
 		fdp_outbox_protect(&m->out, &m->delta, fdp_master_parity(m, m->delta.count));
 		send_delta_to(m, live);
+		fdp_master_tell_followers(m);
+		m->spoke_ns = now_ns;
 	}
 	refresh_snapshots(m, now_ns);
 	fdp_master_finish_if_over(m, now_ns);
@@ -363,17 +374,17 @@ void fdp_master_finish_if_over(struct fdp_master *m, int64_t now_ns)
 	fdp_master_say(m, &swap);
 }
 
-/* Joiners are served and, when they fall silent, forgotten. */
+/* Who joins or follows is served and, when it falls silent, forgotten. */
 static void tend_joiners(struct fdp_master *m, int64_t now_ns)
 {
-	for (size_t i = 0; i < m->params.node_count; i++) {
+	for (size_t i = 0; i < fdp_master_peers(m); i++) {
 		struct fdp_peer *peer = &m->peers[i];
 		const struct fdp_master_event left = {
 			.kind = FDP_MASTER_LEFT, .node = (int)i, .frame = m->frame,
-			.reason = "silent while joining",
+			.reason = fdp_master_is_follower(m, (unsigned)i) ? "silent" : "silent while joining",
 		};
 
-		if (peer->state != FDP_PEER_JOINING ||
+		if ((peer->state != FDP_PEER_JOINING && peer->state != FDP_PEER_FOLLOWS) ||
 		    now_ns - peer->status.last_heard_ns < FDP_JOIN_SILENCE_NS)
 			continue;
 		peer->state = fdp_peer_next(peer->state, FDP_PEER_EXPIRES);
@@ -402,12 +413,13 @@ void fdp_master_tick(struct fdp_master *m, int64_t now_ns)
 	tend_joiners(m, now_ns);
 	if (now_ns >= m->keepalive_at) {
 		m->keepalive_at = now_ns + FDP_KEEPALIVE_NS;
-		/* Each SWAP says as much. */
-		if (!m->all_told_ns || now_ns - m->all_told_ns > FDP_KEEPALIVE_NS / 2)
+		/* Each SWAP says as much; and who calls has told nobody anything. */
+		if (!m->calls && (!m->all_told_ns || now_ns - m->all_told_ns > FDP_KEEPALIVE_NS / 2))
 			fdp_master_announce(m, fdp_master_all(m), FDP_PROBE);
 		fdp_master_probe_group(m);
-		fdp_master_send_beacon(m);
+		fdp_master_beacon(m, now_ns);
 	}
+	fdp_master_heartbeat(m, now_ns);
 	if (!m->underway)
 		return;
 	if (now_ns >= ask_at(m) && now_ns < m->barrier.deadline_ns) {
@@ -428,14 +440,16 @@ int64_t fdp_master_next(const struct fdp_master *m)
 {
 	int64_t next = m->keepalive_at;
 
-	for (size_t i = 0; i < m->params.node_count; i++) {
+	if (fdp_master_heartbeat_at(m) < next)
+		next = fdp_master_heartbeat_at(m);
+	for (size_t i = 0; i < fdp_master_peers(m); i++) {
 		const struct fdp_peer *peer = &m->peers[i];
 		int64_t at = INT64_MAX;
 
 		if ((peer->state == FDP_PEER_JOINING && !peer->synced) ||
-		    (fdp_peer_counts(peer->state) && peer->wants_snapshot))
+		    (fdp_peer_present(peer->state) && peer->wants_snapshot))
 			at = peer->snapshot_ns + m->params.probe_ns;
-		else if (peer->state == FDP_PEER_JOINING)
+		else if (peer->state == FDP_PEER_JOINING || peer->state == FDP_PEER_FOLLOWS)
 			at = peer->status.last_heard_ns + FDP_JOIN_SILENCE_NS;
 		next = at < next ? at : next;
 	}
@@ -452,9 +466,15 @@ void fdp_master_leave(struct fdp_master *m, int64_t now_ns)
 {
 	(void)now_ns;
 	/* Nobody answers to it: twice, so that one loss does not cost the nodes their time-out. */
-	for (int i = 0; i < 2; i++)
+	for (int i = 0; i < 2; i++) {
 		fdp_outbox_send(&m->out, fdp_master_all(m), FDP_LEAVE,
 				fdp_leave_encode(m->frame, fdp_outbox_body(&m->out), FDP_BODY_MAX));
+		for (size_t k = m->params.node_count; k < fdp_master_peers(m); k++)
+			if (fdp_peer_present(m->peers[k].state))
+				fdp_outbox_send(&m->out, (int)k, FDP_LEAVE,
+						fdp_leave_encode(m->frame, fdp_outbox_body(&m->out),
+								 FDP_BODY_MAX));
+	}
 }
 
 void fdp_master_set_deadline(struct fdp_master *m, int64_t deadline_ns)
@@ -475,7 +495,9 @@ size_t fdp_master_live(const struct fdp_master *m)
 
 size_t fdp_master_present(const struct fdp_master *m)
 {
-	return count_bits(fdp_master_mask(m, fdp_peer_present));
+	const uint64_t present = fdp_master_mask(m, fdp_peer_present);
+
+	return count_bits(m->params.node_count < 64 ? present & (BIT(m->params.node_count) - 1) : present);
 }
 
 uint64_t fdp_master_hash(const struct fdp_master *m)
@@ -486,7 +508,7 @@ uint64_t fdp_master_hash(const struct fdp_master *m)
 void fdp_master_peer(const struct fdp_master *m, size_t node, struct fdp_peer_status *out)
 {
 	*out = (struct fdp_peer_status){ .state = FDP_PEER_ABSENT };
-	if (node >= m->params.node_count)
+	if (node >= fdp_master_peers(m))
 		return;
 	*out = m->peers[node].status;
 	out->state = m->peers[node].state;

@@ -24,7 +24,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define FDP_MAX_NODES 64
+#define FDP_MAX_NODES 64 /* and masters, where a room has more than one */
+#define FDP_MAX_MASTERS 8
 #define FDP_TO_ALL (-1)   /* each node by itself */
 #define FDP_TO_GROUP (-2) /* once, to the group that all are in */
 #define FDP_REASON_MAX 224
@@ -37,6 +38,7 @@ enum fdp_peer_state {
 	FDP_PEER_LIVE,    /* counts in the barrier */
 	FDP_PEER_LATE,    /* missed the last barrier, still counts */
 	FDP_PEER_DEAD,    /* evicted; may join again */
+	FDP_PEER_FOLLOWS, /* another master, that has the state and no part in the barrier */
 };
 const char *fdp_peer_state_name(enum fdp_peer_state state);
 
@@ -49,6 +51,8 @@ enum fdp_master_event_kind {
 	FDP_MASTER_PACE,     /* node is slow, at half the rate, out for slowness, or in step again: pace */
 	FDP_MASTER_MISMATCH, /* node's state hash differs: ours, theirs; it gets a snapshot */
 	FDP_MASTER_SWAP,     /* SWAP(frame) was sent */
+	FDP_MASTER_FOLLOWED, /* master node - node_count follows from now on */
+	FDP_MASTER_OUTRANKED, /* node has been in session `theirs`, above ours, and is in none now */
 	FDP_MASTER_WAY,      /* what is for all goes `way`; node: the first that does not hear the group */
 };
 
@@ -94,7 +98,7 @@ enum fdp_parity {
 };
 
 struct fdp_master_params {
-	uint64_t session; /* random, new at every start, not 0 */
+	uint64_t session; /* new at every start, not 0; the upper half is the epoch, see fdp_session_after */
 	uint8_t key[FDP_KEY_BYTES];
 	struct fdp_contents contents;
 	const char *const *node_names;
@@ -108,6 +112,12 @@ struct fdp_master_params {
 	int64_t probe_ns;
 	unsigned evict_frames;
 	struct fdp_pace_params pace; /* what becomes of a node that lives and is slow */
+	/*
+	 * Masters of the layout, 0 or 1: this one alone, and which of them this is. The
+	 * others may follow: as peers from node_count on, in the layout's order.
+	 */
+	unsigned masters, index;
+	int64_t heartbeat_ns; /* with more than one: it says at least so often that it lives */
 	bool multicast;   /* there is a group: one send on the wire for all */
 	bool probe_group; /* but it is used only while every live node hears it */
 	enum fdp_parity parity;
@@ -121,7 +131,7 @@ struct fdp_report;
 struct fdp_master_ops {
 	/*
 	 * Neither may call back into the master.
-	 * One datagram to node `to`, or for FDP_TO_ALL to each of them, or to the group
+	 * One datagram to node `to` (from node_count on: to a master), or for FDP_TO_ALL to each of them, or to the group
 	 * (FDP_TO_GROUP, with params.multicast alone). Where the
 	 * node's address is not the layout's, the caller has the last source
 	 * address it heard a fresh datagram from (fdp_master_receive). What is sent
@@ -223,6 +233,26 @@ int fdp_master_receive(struct fdp_master *master, const uint8_t *bytes, size_t l
  * is given, where it has one: waking up is then no part of the way.
  */
 void fdp_master_arrived(struct fdp_master *master, int64_t arrived_ns);
+/*
+ * Another session, above ours, of which `state` is the last that was shown, as
+ * `frame` (0: none was). Whoever was in must join anew. state may be NULL with
+ * frame 0; it is copied. No allocation.
+ */
+void fdp_master_renew(struct fdp_master *master, uint64_t session, const struct param_state *state,
+		      uint64_t frame);
+/* The upper half of a session. */
+#define FDP_EPOCH_SHIFT 32
+/* A session of the next epoch after that of `highest`; the rest is random. */
+uint64_t fdp_session_after(uint64_t highest);
+/*
+ * From now on until a node comes in, no master may follow: this one only asks
+ * whether there are nodes without a master.
+ */
+void fdp_master_call(struct fdp_master *master);
+bool fdp_master_calls(const struct fdp_master *master);
+/* BEACON to every node and master that is not in, at once. */
+void fdp_master_beacon(struct fdp_master *master, int64_t now_ns);
+uint64_t fdp_master_session(const struct fdp_master *master);
 /* In ops.send: the node whose datagram is answered; -1 outside of fdp_master_receive. */
 int fdp_master_answers(const struct fdp_master *master);
 /* Does what time asks for: probes, deadline, evictions. */

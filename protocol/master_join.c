@@ -106,8 +106,28 @@ static void admit(struct fdp_master *m, unsigned node, const struct fdp_header *
 	peer->mismatch_frame = 0;
 	peer->refused[0] = 0;
 	peer->state = fdp_peer_next(peer->state, FDP_PEER_JOINS);
-	fdp_master_probe_group(m);
+	if (!fdp_master_is_follower(m, node)) {
+		m->calls = false;
+		fdp_master_probe_group(m);
+	}
 	fdp_master_send_snapshot(m, node, now_ns);
+}
+
+/*
+ * It has been in a session above ours, so it will not enter this one; and it
+ * has lost that one, or it would not ask. Proven, for it has echoed our challenge.
+ */
+static bool outranked(struct fdp_master *m, unsigned node, const struct fdp_join *join)
+{
+	const struct fdp_master_event event = {
+		.kind = FDP_MASTER_OUTRANKED, .node = (int)node, .frame = m->frame,
+		.ours = m->params.session, .theirs = join->highest,
+	};
+
+	if (join->highest <= m->params.session)
+		return false;
+	fdp_master_say(m, &event);
+	return true;
 }
 
 bool fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
@@ -119,6 +139,9 @@ bool fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
 	char reason[FDP_REASON_MAX];
 	uint64_t plan;
 
+	/* Whoever only calls has nothing to follow yet. */
+	if (fdp_master_is_follower(m, node) && m->calls)
+		return false;
 	if (fdp_master_refuses(m, header->version, join, reason, &plan)) {
 		refuse(m, node, join, reason, plan, now_ns);
 		return false;
@@ -145,6 +168,8 @@ bool fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
 		m->counters.bad_replay++;
 		return false;
 	}
+	if (outranked(m, node, join))
+		return false;
 	admit(m, node, header, join, now_ns);
 	return true;
 }

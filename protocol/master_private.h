@@ -3,7 +3,7 @@
  * what arrives, master_clock.c time, master_pace.c who does not keep up, master_join.c
  * who may take part and master_refuse.c why not, master_repair.c what is sent again,
  * master_parity.c what is sent ahead of losses, master_way.c the way to all,
- * master_share.c the light that the nodes share out.
+ * master_follow.c the other masters, master_share.c the light that the nodes share out.
  */
 #ifndef GROTTO_PROTOCOL_MASTER_PRIVATE_H
 #define GROTTO_PROTOCOL_MASTER_PRIVATE_H
@@ -130,6 +130,8 @@ struct fdp_master {
 	unsigned loss; /* frames for which small messages still go twice */
 	int64_t asked_ns; /* who has not acknowledged the frame was last asked, or the frame began */
 	int64_t keepalive_at;
+	int64_t spoke_ns;    /* to all who are live or follow */
+	bool calls;          /* see fdp_master_call */
 	int64_t all_told_ns; /* SWAP last went to all nodes that the layout has */
 	unsigned probes; /* in this frame */
 
@@ -220,6 +222,27 @@ void fdp_master_choose_way(struct fdp_master *m, uint64_t live, int64_t now_ns);
 /* So that nodes can say whether they hear a group that is not in use. */
 void fdp_master_probe_group(struct fdp_master *m);
 void fdp_master_send_beacon(struct fdp_master *m);
+
+/* Nodes and, from node_count on, masters. */
+static inline size_t fdp_master_peers(const struct fdp_master *m)
+{
+	return m->params.node_count + (m->params.masters > 1 ? m->params.masters : 0);
+}
+
+static inline bool fdp_master_is_follower(const struct fdp_master *m, unsigned peer)
+{
+	return peer >= m->params.node_count;
+}
+
+/* The frame's delta to all masters that follow. */
+void fdp_master_tell_followers(struct fdp_master *m);
+/* Word to who would otherwise think that we are gone; when it is due. */
+void fdp_master_heartbeat(struct fdp_master *m, int64_t now_ns);
+int64_t fdp_master_heartbeat_at(const struct fdp_master *m);
+/* The frame's delta to one, signed for it. */
+void fdp_master_send_delta(struct fdp_master *m, int to);
+/* The hash of m->state as that of m->frame, after previous_hash. */
+void fdp_master_remember_hash(struct fdp_master *m);
 
 static inline int fdp_master_all(const struct fdp_master *m)
 {

@@ -51,7 +51,11 @@ static void note_acked(struct fdp_master *m, unsigned node, const struct fdp_rep
 		if (m->barrier.draws & BIT(node) && m->underway)
 			fdp_trip_take(&peer->trip, m->now_ns - m->barrier.begun_ns);
 	}
-	if (peer->state == FDP_PEER_JOINING && !peer->synced) {
+	if (peer->state == FDP_PEER_JOINING && fdp_master_is_follower(m, node)) {
+		peer->state = fdp_peer_next(peer->state, FDP_PEER_FOLLOWED);
+		fdp_master_say(m, &(struct fdp_master_event){
+			.kind = FDP_MASTER_FOLLOWED, .node = (int)node, .frame = m->frame });
+	} else if (peer->state == FDP_PEER_JOINING && !peer->synced) {
 		peer->synced = true;
 		fdp_trip_take(&peer->trip, m->now_ns - peer->snapshot_ns);
 		fdp_master_say(m, &joined);
@@ -127,6 +131,12 @@ static void note_losses(struct fdp_master *m, unsigned node, const struct fdp_re
 static void on_report(struct fdp_master *m, unsigned node, enum fdp_kind kind,
 		      const struct fdp_report *report, int64_t now_ns)
 {
+	if (fdp_master_is_follower(m, node)) {
+		/* It draws nothing, and nobody waits for it. */
+		if (kind == FDP_ACK && state_agrees(m, node, report, now_ns))
+			note_acked(m, node, report);
+		return;
+	}
 	fdp_master_note_clock(m, node, report, m->arrived_ns);
 	note_losses(m, node, report);
 	note_swap(&m->peers[node], report, now_ns);

@@ -60,6 +60,8 @@ static bool contents_differ(const struct fdp_master *m, const struct fdp_join *j
 static bool plans_differ(const struct fdp_master *m, const struct fdp_join *join,
 			 char reason[FDP_REASON_MAX], uint64_t *out_plan)
 {
+	if (fdp_master_is_follower(m, join->index))
+		return false;
 	for (size_t i = 0; i < m->params.node_count; i++) {
 		const struct fdp_peer *peer = &m->peers[i];
 

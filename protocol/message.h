@@ -13,9 +13,9 @@
 #define FDP_NONCE_BYTES 16
 #define FDP_NAME_BYTES 32 /* with the final NUL */
 /* Padded: what answers a JOIN, or a BEACON, is never longer than it. */
-#define FDP_JOIN_BYTES 320
+#define FDP_JOIN_BYTES 328
 #define FDP_JOIN_FIXED 152 /* of these the form is the same in all versions */
-#define FDP_ITEMS_BYTES (FDP_JOIN_BYTES - FDP_JOIN_FIXED - 2)
+#define FDP_ITEMS_BYTES (FDP_JOIN_BYTES - FDP_JOIN_FIXED - 10)
 #define FDP_BODY_MAX (FDP_DATAGRAM_MIN - FDP_HEADER_BYTES) /* of all but states and slices */
 
 struct fdp_join {
@@ -28,6 +28,7 @@ struct fdp_join {
 	uint64_t plan; /* of how this node computes the light, where that is not the scene file's to say; 0: it is */
 	/* What it expects of that, hundredths: of a millisecond a frame, of a percent. UINT16_MAX: that or more. */
 	uint16_t plan_cost, plan_error;
+	uint64_t highest; /* session that it has been in: it enters none below; 0: none yet */
 	/*
 	 * The parts of layout and scene, the beginnings of their digests in this
 	 * order: fdp_items_width bytes each. All 0 in a JOIN of another version.
@@ -165,6 +166,9 @@ struct fdp_state_head {
 	uint64_t half; /* of those that draw it, who shows it with the frame after; 0: none */
 };
 #define FDP_STATE_HEAD_MAX (1 + 2 * 8 + 7 * GR_VARINT_MOST)
+
+/* What a master calls itself when it follows: by its place in the layout, 0 the first. */
+void fdp_master_name(unsigned index, char name[FDP_NAME_BYTES]);
 
 size_t fdp_join_encode(const struct fdp_join *m, uint8_t *bytes, size_t size);
 int fdp_join_decode(const uint8_t *bytes, size_t len, struct fdp_join *out);

@@ -28,7 +28,7 @@ static void to_caller(void *ctx, int to, const uint8_t *bytes, size_t len)
 	struct fdp_node *n = ctx;
 
 	(void)to;
-	n->ops.send(n->ops.ctx, bytes, len);
+	n->ops.send(n->ops.ctx, n->to, bytes, len);
 }
 
 static void say_reason(struct fdp_node *n, enum fdp_node_event_kind kind, const char *reason)
@@ -69,7 +69,7 @@ int fdp_node_create(struct fdp_node **out, const struct fdp_node_params *params,
 	    strlen(params->name) >= FDP_NAME_BYTES || params->datagram_max < FDP_DATAGRAM_MIN ||
 	    params->datagram_max > FDP_DATAGRAM_MAX || params->join_ns < 0 ||
 	    params->contents.layout_count + params->contents.scene_count > FDP_ITEMS_MAX ||
-	    params->silence_ns < 0 || !ops->send || !ops->event)
+	    params->masters > FDP_MAX_MASTERS || params->call_ns < 0 || params->silence_ns < 0 || !ops->send || !ops->event)
 		return GR_ERR_RANGE;
 	n = calloc(1, sizeof *n);
 	if (!n)
@@ -81,13 +81,16 @@ int fdp_node_create(struct fdp_node **out, const struct fdp_node_params *params,
 		n->params.join_ns = FDP_JOIN_DEFAULT_NS;
 	if (!n->params.silence_ns)
 		n->params.silence_ns = FDP_SILENCE_DEFAULT_NS;
+	if (!n->params.masters)
+		n->params.masters = 1;
+	n->to = fdp_node_whom_to_ask(n);
 	n->ops = *ops;
 	n->gate = (struct fdp_gate){
 		.cluster_key = n->params.key,
 		.keys = (const uint8_t(*)[FDP_KEY_BYTES])n->key_to_nodes,
 		.kinds = NODE_KINDS,
 		.any_version_kinds = 1u << FDP_REFUSE,
-		.first_sender = FDP_SENDER_MASTER,
+		.first_sender = fdp_master_sender(n->params.masters - 1),
 		.last_sender = FDP_SENDER_MASTER,
 		.self = (uint8_t)(params->index + 1),
 	};
@@ -119,14 +122,6 @@ int fdp_node_create(struct fdp_node **out, const struct fdp_node_params *params,
 	return GR_OK;
 }
 
-/* Belongs to no session: nothing but a handshake is taken, and the keys are gone. */
-static void forget_session(struct fdp_node *n)
-{
-	n->gate.session = n->out.session = n->gate.keyed = 0;
-	sodium_memzero(n->key_to_nodes, sizeof n->key_to_nodes);
-	sodium_memzero(n->key_to_master, sizeof n->key_to_master);
-}
-
 void fdp_node_destroy(struct fdp_node **node)
 {
 	struct fdp_node *n = *node;
@@ -139,48 +134,38 @@ void fdp_node_destroy(struct fdp_node **node)
 	param_state_destroy(&n->state);
 	param_state_destroy(&n->scratch);
 	sodium_memzero(n->params.key, sizeof n->params.key);
-	forget_session(n);
+	fdp_node_forget_session(n);
 	free(n);
 }
 
-/* session 0 asks; the session of a WELCOME, with its challenge, confirms. */
-static void send_join(struct fdp_node *n, uint64_t session, int64_t now_ns)
+/* May we? or, where we were welcome, we are here now; again, until it is answered. */
+static void ask(struct fdp_node *n, int64_t now_ns)
 {
-	const uint64_t own = n->out.session;
-	struct fdp_join join = {
-		.version = FDP_VERSION,
-		.index = n->params.index,
-		.table_hash = param_table_hash(),
-		.plan = n->params.plan,
-		.plan_cost = n->params.plan_cost,
-		.plan_error = n->params.plan_error,
-		.layout_items = (uint8_t)n->params.contents.layout_count,
-		.scene_items = (uint8_t)n->params.contents.scene_count,
-	};
-
-	memcpy(join.nonce, session ? n->joined_nonce : n->nonce, sizeof join.nonce);
-	if (session)
-		memcpy(join.challenge, n->challenge, sizeof join.challenge);
-	memcpy(join.layout_hash, n->params.contents.layout_hash, sizeof join.layout_hash);
-	memcpy(join.scene_hash, n->params.contents.scene_hash, sizeof join.scene_hash);
-	memcpy(join.items, n->items, sizeof join.items);
-	memcpy(join.name, n->name, sizeof join.name);
 	n->asked_ns = now_ns;
 	n->asked = true;
-	n->out.session = session;
-	fdp_outbox_send(&n->out, FDP_TO_ALL, FDP_JOIN,
-			fdp_join_encode(&join, fdp_outbox_body(&n->out), FDP_BODY_MAX));
-	n->out.session = own;
+	if (n->gate.session)
+		fdp_node_send_join(n, n->to, n->gate.session, n->joined_nonce, n->challenge);
+	else
+		fdp_node_send_join(n, fdp_node_whom_to_ask(n), 0, n->nonce, NULL);
 }
 
-static void enter_session(struct fdp_node *n, uint64_t session, const struct fdp_welcome *w,
+static void enter_session(struct fdp_node *n, const struct fdp_header *h, const struct fdp_welcome *w,
 			  int64_t now_ns)
 {
+	const uint64_t session = h->session;
+	const unsigned i = (unsigned)h->sender - n->gate.first_sender;
+
+	fdp_node_forget_session(n); /* and what another master knew us by */
+	n->master = FDP_SENDER_MASTER - (unsigned)h->sender;
+	n->to = (int)n->master;
+	n->highest = session;
+	n->guards = false;
+	n->call_session = 0;
 	n->gate.session = n->out.session = session;
-	fdp_key_to_nodes(n->params.key, session, w->master_nonce, n->key_to_nodes[0]);
+	fdp_key_to_nodes(n->params.key, session, w->master_nonce, n->key_to_nodes[i]);
 	fdp_key_to_master(n->params.key, session, n->params.index, w->master_nonce, w->nonce,
 			  w->challenge, n->key_to_master);
-	n->gate.keyed = 1;
+	n->gate.keyed = UINT64_C(1) << i;
 	n->heard_ns = now_ns;
 	n->group_heard_ns = 0;
 	n->out.hears_group = false;
@@ -190,7 +175,8 @@ static void enter_session(struct fdp_node *n, uint64_t session, const struct fdp
 static void stop_taking_part(struct fdp_node *n)
 {
 	n->status = FDP_NODE_ASKING;
-	forget_session(n);
+	fdp_node_forget_session(n);
+	n->to = fdp_node_whom_to_ask(n);
 	n->asked = false; /* at once */
 	randombytes_buf(n->nonce, sizeof n->nonce);
 }
@@ -220,11 +206,19 @@ static enum fdp_verdict on_welcome(struct fdp_node *n, const struct fdp_header *
 
 	if (!h->session || fdp_welcome_decode(body, h->payload_len, &w))
 		return FDP_BAD_FORMAT;
+	/* Two masters answered, and the other was faster. */
+	if (n->gate.session && n->params.masters > 1 &&
+	    !sodium_memcmp(w.nonce, n->joined_nonce, sizeof w.nonce))
+		return FDP_GOOD;
 	if (sodium_memcmp(w.nonce, n->nonce, sizeof w.nonce))
 		return FDP_BAD_REPLAY;
-	/* We asked because of a beacon of another session; this is our own master. */
-	if (h->session == n->gate.session)
+	/* We asked because of a beacon of another session; this is our own master, or ours speaks again. */
+	if (h->session == n->gate.session || !fdp_node_is_free(n, now_ns))
 		return FDP_GOOD;
+	if (h->session < n->highest || (n->guards && h->session == n->highest)) {
+		fdp_node_prove_highest(n, h, &w, now_ns);
+		return FDP_GOOD;
+	}
 	memcpy(n->challenge, w.challenge, sizeof n->challenge);
 	/* No WELCOME is good twice: the next one must echo another nonce. */
 	memcpy(n->joined_nonce, n->nonce, sizeof n->joined_nonce);
@@ -232,10 +226,10 @@ static enum fdp_verdict on_welcome(struct fdp_node *n, const struct fdp_header *
 	n->retry_ns = n->wait_ns = (int64_t)w.probe_us * 1000;
 	n->out.sequence = w.first_sequence - 1;
 	fdp_replay_start(&n->window, h->sequence);
-	enter_session(n, h->session, &w, now_ns);
+	enter_session(n, h, &w, now_ns);
 	n->status = FDP_NODE_WAITING_SNAPSHOT;
 	n->refused[0] = 0;
-	send_join(n, h->session, now_ns);
+	ask(n, now_ns);
 	fdp_node_say(n, FDP_NODE_JOINED, 0);
 	return FDP_GOOD;
 }
@@ -270,7 +264,9 @@ static enum fdp_verdict in_session(struct fdp_node *n, const struct fdp_header *
 
 	if (!fdp_replay_take(&n->window, h->sequence))
 		return FDP_BAD_REPLAY;
-	n->heard_ns = now_ns;
+	/* When it came, not when we had time for it: what waited here does not prove it alive. */
+	if (n->arrived_ns > n->heard_ns)
+		n->heard_ns = n->arrived_ns;
 	if (h->group)
 		n->group_heard_ns = now_ns;
 	n->out.hears_group = n->group_heard_ns && now_ns - n->group_heard_ns < FDP_GROUP_FRESH_NS;
@@ -298,24 +294,6 @@ static enum fdp_verdict in_session(struct fdp_node *n, const struct fdp_header *
 	}
 }
 
-/*
- * A key holder speaks of another session: a new master, or a recording.
- * Asking shows which, and changes nothing here until the answer echoes our nonce.
- */
-static enum fdp_verdict on_beacon(struct fdp_node *n, const struct fdp_header *h,
-				  const uint8_t *body, int64_t now_ns)
-{
-	if (!h->session || fdp_beacon_decode(body, h->payload_len))
-		return FDP_BAD_FORMAT;
-	/* Who is asking anyway need not be told to. */
-	if (n->status < FDP_NODE_WAITING_SNAPSHOT || h->session == n->gate.session ||
-	    (n->hinted_ns && now_ns - n->hinted_ns < n->params.join_ns))
-		return FDP_GOOD;
-	n->hinted_ns = now_ns;
-	send_join(n, 0, now_ns);
-	return FDP_GOOD;
-}
-
 int fdp_node_receive(struct fdp_node *n, const uint8_t *bytes, size_t len, int64_t now_ns)
 {
 	const uint8_t *body = bytes + FDP_HEADER_BYTES;
@@ -338,7 +316,7 @@ int fdp_node_receive(struct fdp_node *n, const uint8_t *bytes, size_t len, int64
 		else if (h.kind == FDP_REFUSE)
 			verdict = on_refuse(n, &h, body, now_ns);
 		else if (h.kind == FDP_BEACON)
-			verdict = on_beacon(n, &h, body, now_ns);
+			verdict = fdp_node_on_beacon(n, &h, body, now_ns);
 		else
 			verdict = in_session(n, &h, body, now_ns);
 	}
@@ -347,31 +325,41 @@ int fdp_node_receive(struct fdp_node *n, const uint8_t *bytes, size_t len, int64
 	return fdp_verdict_result(verdict);
 }
 
+/* Who was welcome a moment ago has a master that answers. */
+static int64_t ask_again_ns(const struct fdp_node *n)
+{
+	const int64_t soon_ns = 4 * n->retry_ns;
+
+	return n->status == FDP_NODE_WAITING_SNAPSHOT && soon_ns < n->params.join_ns ? soon_ns : n->params.join_ns;
+}
+
 void fdp_node_tick(struct fdp_node *n, int64_t now_ns)
 {
-	if (n->status >= FDP_NODE_WAITING_SNAPSHOT &&
-	    now_ns - n->heard_ns >= n->params.silence_ns)
+	if (fdp_node_in_session(n) && now_ns - n->heard_ns >= n->params.silence_ns)
 		fdp_node_ask_again(n, FDP_NODE_LOST, "nothing from the master");
 	if (n->status == FDP_NODE_ALONE)
 		n->status = FDP_NODE_ASKING;
+	fdp_node_serve_call(n, now_ns);
 	if (n->status == FDP_NODE_LIVE) {
 		fdp_node_frame_tick(n, now_ns);
 		return;
 	}
-	if (!n->asked || now_ns - n->asked_ns >= n->params.join_ns)
-		send_join(n, n->gate.session, now_ns);
+	if (!n->guards && (!n->asked || now_ns - n->asked_ns >= ask_again_ns(n)))
+		ask(n, now_ns);
 }
 
 int64_t fdp_node_next(const struct fdp_node *n)
 {
-	int64_t next = INT64_MAX, frame_next;
+	int64_t next = fdp_node_call_at(n), frame_next;
 
 	if (n->status == FDP_NODE_ALONE)
 		return 0;
-	if (n->status >= FDP_NODE_WAITING_SNAPSHOT)
+	if (fdp_node_in_session(n) && n->heard_ns + n->params.silence_ns < next)
 		next = n->heard_ns + n->params.silence_ns;
+	if (n->guards)
+		return next;
 	if (n->status != FDP_NODE_LIVE) {
-		const int64_t ask = n->asked ? n->asked_ns + n->params.join_ns : 0;
+		const int64_t ask = n->asked ? n->asked_ns + ask_again_ns(n) : 0;
 		return ask < next ? ask : next;
 	}
 	frame_next = fdp_node_frame_next(n);
@@ -412,7 +400,8 @@ void fdp_node_leave(struct fdp_node *n, int64_t now_ns)
 	for (int i = 0; i < 2; i++)
 		fdp_outbox_send(&n->out, FDP_TO_ALL, FDP_LEAVE,
 				fdp_leave_encode(n->applied, fdp_outbox_body(&n->out), FDP_BODY_MAX));
-	forget_session(n);
+	fdp_node_forget_session(n);
+	n->to = fdp_node_whom_to_ask(n);
 	n->status = FDP_NODE_ALONE;
 	randombytes_buf(n->nonce, sizeof n->nonce);
 	fdp_node_frame_reset(n);

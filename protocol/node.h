@@ -10,7 +10,9 @@
  *
  * Without a master it asks to join every join_ns, for ever. A frame whose
  * successor arrives first is dropped (FDP_NODE_FRAME comes only for the
- * newest). A master that restarts (new session) is joined anew.
+ * newest). A master that restarts (new session) is joined anew, and another master
+ * where the layout has several: only when its own is silent, and never one whose
+ * session is below one that it has been in.
  * Not thread safe; no allocation after create.
  */
 #ifndef GROTTO_PROTOCOL_NODE_H
@@ -41,7 +43,7 @@ struct fdp_node_event {
 };
 
 struct fdp_node_params {
-	uint16_t index; /* of this node in the layout */
+	uint16_t index; /* of this node in the layout; from the number of nodes on: of a master that follows */
 	const char *name;
 	uint8_t key[FDP_KEY_BYTES];
 	struct fdp_contents contents;
@@ -50,6 +52,8 @@ struct fdp_node_params {
 	size_t datagram_max;
 	int64_t join_ns;    /* between two requests to join; 0: 200 ms */
 	int64_t silence_ns; /* master counts as lost after this; 0: 2 s */
+	unsigned masters;   /* of the layout, 0 or 1: one */
+	int64_t call_ns;    /* one that is silent for so long may be replaced by one that calls */
 	/*
 	 * All nodes' slices of the light together, bytes: at each count of nodes as
 	 * many times the longest slice. 0: nothing is shared. At most FDP_SHARE_MAX.
@@ -58,7 +62,8 @@ struct fdp_node_params {
 };
 
 struct fdp_node_ops { /* neither may call back into the node */
-	void (*send)(void *ctx, const uint8_t *bytes, size_t len); /* to the master */
+	/* To a master of the layout, by its index, or FDP_TO_ALL of them. */
+	void (*send)(void *ctx, int to, const uint8_t *bytes, size_t len);
 	void (*event)(void *ctx, const struct fdp_node_event *event);
 	void *ctx;
 };
@@ -112,6 +117,19 @@ void fdp_node_leave(struct fdp_node *node, int64_t now_ns);
 enum fdp_node_state fdp_node_status(const struct fdp_node *node);
 /* Where the master's clock stands beside ours. */
 void fdp_node_clock(const struct fdp_node *node, int64_t now_ns, struct fdp_clock_estimate *out);
+/*
+ * For masters that follow. From now on it asks for no master by itself: it only
+ * looks whether one rules in a session above `session`, and joins it if so.
+ */
+void fdp_node_guard(struct fdp_node *node, uint64_t session);
+/* When the master that it is with was last heard; 0: it is with none. */
+int64_t fdp_node_heard(const struct fdp_node *node);
+/* The highest session that it has been in; 0: none. */
+uint64_t fdp_node_highest(const struct fdp_node *node);
+/* The frame whose state it holds; 0: none. And who counted in it. */
+uint64_t fdp_node_applied(const struct fdp_node *node, uint64_t *out_live);
+/* Index of the master that it is with. */
+unsigned fdp_node_master(const struct fdp_node *node);
 /* Of the master that it is with; 0: none. */
 uint64_t fdp_node_session(const struct fdp_node *node);
 uint64_t fdp_node_hash(const struct fdp_node *node);

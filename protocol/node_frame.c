@@ -6,7 +6,7 @@
 
 void fdp_node_frame_reset(struct fdp_node *n)
 {
-	n->applied = n->hash = 0;
+	n->applied = n->hash = n->applied_live = 0;
 	n->swap_seen = 0;
 	n->twice = false;
 	n->joined_sequence = 0;
@@ -128,6 +128,7 @@ static enum fdp_verdict apply(struct fdp_node *n, const struct fdp_state_head *h
 	n->scratch = n->state;
 	n->state = next;
 	n->applied = head->frame;
+	n->applied_live = head->live;
 	n->hash = hash;
 	if (n->status == FDP_NODE_WAITING_SNAPSHOT) {
 		n->status = FDP_NODE_LIVE;

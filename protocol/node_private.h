@@ -1,5 +1,6 @@
 /*
- * Inside the node's half of FDP: node.c has membership, node_frame.c the
+ * Inside the node's half of FDP: node.c has membership, node_call.c which of
+ * several masters it is with, node_frame.c the
  * frame, node_clock.c time, node_share.c the light that the nodes share out.
  */
 #ifndef GROTTO_PROTOCOL_NODE_PRIVATE_H
@@ -38,7 +39,7 @@ struct fdp_node {
 	struct fdp_gate gate;
 	struct fdp_outbox out;
 	/* Of the session we are in, zero in none. */
-	uint8_t key_to_nodes[1][FDP_KEY_BYTES], key_to_master[FDP_KEY_BYTES];
+	uint8_t key_to_nodes[FDP_MAX_MASTERS][FDP_KEY_BYTES], key_to_master[FDP_KEY_BYTES];
 	uint8_t items[FDP_ITEMS_BYTES]; /* as JOIN says them */
 
 	enum fdp_node_state status;
@@ -46,6 +47,15 @@ struct fdp_node {
 	/* Of the session we are in: what its second JOIN says again. */
 	uint8_t joined_nonce[FDP_NONCE_BYTES], challenge[FDP_NONCE_BYTES];
 	struct fdp_replay window;
+	unsigned master;  /* that we are with, by the layout */
+	uint64_t highest; /* session that we have been in */
+	bool guards;      /* see fdp_node_guard */
+	int to;           /* where what is sent goes: a master, or FDP_TO_ALL */
+	/* The highest session that a BEACON spoke of, since when, and by whom; 0: none that is of use. */
+	uint64_t call_session;
+	int64_t call_heard_ns;
+	unsigned call_master;
+	int64_t proved_ns; /* JOIN last sent to show a master what we have been in */
 	int64_t asked_ns; /* JOIN last sent */
 	bool asked;
 	int64_t hinted_ns; /* JOIN last sent because of another session's beacon */
@@ -59,7 +69,7 @@ struct fdp_node {
 	uint64_t joined_sequence; /* the master's, of our first snapshot */
 
 	struct param_state *state, *scratch;
-	uint64_t applied, hash;
+	uint64_t applied, hash, applied_live; /* live: who counted in it */
 	uint64_t swap_seen; /* highest frame whose swap was announced */
 	bool twice;
 	struct fdp_node_frame current;
@@ -90,6 +100,27 @@ struct fdp_node {
 void fdp_node_say(struct fdp_node *n, enum fdp_node_event_kind kind, uint64_t frame);
 /* Back to asking; `kind` and reason say why. */
 void fdp_node_ask_again(struct fdp_node *n, enum fdp_node_event_kind kind, const char *reason);
+/* Has joined, and is welcome at least. */
+static inline bool fdp_node_in_session(const struct fdp_node *n)
+{
+	return n->status >= FDP_NODE_WAITING_SNAPSHOT;
+}
+/* A master's index, or FDP_TO_ALL. */
+int fdp_node_whom_to_ask(const struct fdp_node *n);
+/* Nothing binds us to the master that we are with, if any: another may take its place. */
+bool fdp_node_is_free(const struct fdp_node *n, int64_t now_ns);
+/* Belongs to no session: nothing but a handshake is taken, and the keys are gone. */
+void fdp_node_forget_session(struct fdp_node *n);
+/* session 0 asks; the session of a WELCOME, with its challenge, confirms. challenge may be NULL. */
+void fdp_node_send_join(struct fdp_node *n, int to, uint64_t session,
+			const uint8_t nonce[FDP_NONCE_BYTES], const uint8_t *challenge);
+void fdp_node_prove_highest(struct fdp_node *n, const struct fdp_header *h,
+			    const struct fdp_welcome *w, int64_t now_ns);
+enum fdp_verdict fdp_node_on_beacon(struct fdp_node *n, const struct fdp_header *h,
+				    const uint8_t *body, int64_t now_ns);
+/* When a call that was heard may be answered, INT64_MAX: there is none; and answers it then. */
+int64_t fdp_node_call_at(const struct fdp_node *n);
+void fdp_node_serve_call(struct fdp_node *n, int64_t now_ns);
 /* Our bit in a set of nodes. */
 static inline bool fdp_node_in(const struct fdp_node *n, uint64_t set)
 {

@@ -39,7 +39,7 @@ static void send_sealed(struct fdp_outbox *out, int to, struct fdp_header *heade
 	header->session = out->session;
 	header->sequence = ++out->sequence;
 	header->group = !handshake && (to == FDP_TO_GROUP || out->hears_group);
-	if (out->sender == FDP_SENDER_MASTER && to >= 0 && !handshake)
+	if (fdp_sender_is_master(out->sender) && to >= 0 && !handshake)
 		header->to = (uint8_t)(to + 1);
 	fdp_wire_seal(header, handshake ? out->cluster_key : out->key, out->datagram);
 	out->counters->datagrams_out += copies;

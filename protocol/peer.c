@@ -3,6 +3,7 @@
 static const char *const names[] = {
 	[FDP_PEER_ABSENT] = "absent", [FDP_PEER_JOINING] = "joining", [FDP_PEER_LIVE] = "live",
 	[FDP_PEER_LATE] = "late",     [FDP_PEER_DEAD] = "dead",
+	[FDP_PEER_FOLLOWS] = "follows",
 };
 
 const char *fdp_peer_state_name(enum fdp_peer_state state)
@@ -25,6 +26,8 @@ enum fdp_peer_state fdp_peer_next(enum fdp_peer_state state, enum fdp_peer_event
 		return fdp_peer_present(state) ? FDP_PEER_DEAD : state;
 	case FDP_PEER_LEAVES:
 		return fdp_peer_present(state) ? FDP_PEER_ABSENT : state;
+	case FDP_PEER_FOLLOWED:
+		return state == FDP_PEER_JOINING ? FDP_PEER_FOLLOWS : state;
 	case FDP_PEER_EVENTS:
 		break;
 	}

@@ -11,6 +11,7 @@ enum fdp_peer_event {
 	FDP_PEER_MISSES,   /* a barrier */
 	FDP_PEER_EXPIRES,  /* missed too many, or went silent while joining */
 	FDP_PEER_LEAVES,   /* said so */
+	FDP_PEER_FOLLOWED, /* a master: its snapshot is acknowledged */
 	FDP_PEER_EVENTS
 };
 
@@ -24,7 +25,7 @@ static inline bool fdp_peer_counts(enum fdp_peer_state state)
 
 static inline bool fdp_peer_present(enum fdp_peer_state state)
 {
-	return state == FDP_PEER_JOINING || fdp_peer_counts(state);
+	return state == FDP_PEER_JOINING || state == FDP_PEER_FOLLOWS || fdp_peer_counts(state);
 }
 
 #endif

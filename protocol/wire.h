@@ -22,7 +22,7 @@
 #define FDP_HEADER_BYTES 64
 #define FDP_MAC_AT 48
 #define FDP_MAC_BYTES 16
-#define FDP_SENDER_MASTER 0xffff
+#define FDP_SENDER_MASTER 0xffff /* less the master's index in the layout */
 #define FDP_DATAGRAM_MIN 448   /* least datagram_max: a JOIN, or a SWAP of 64 slices, in one piece */
 #define FDP_DATAGRAM_MAX 65507 /* what UDP over IPv4 can hold */
 #define FDP_MESSAGE_MAX 65536
@@ -60,6 +60,17 @@ enum fdp_kind {
 	FDP_KINDS
 };
 
+/* The sender of master `index`, and the index of a master that is the sender. */
+static inline uint16_t fdp_master_sender(unsigned index)
+{
+	return (uint16_t)(FDP_SENDER_MASTER - index);
+}
+
+static inline bool fdp_sender_is_master(uint16_t sender)
+{
+	return sender > FDP_SENDER_MASTER - FDP_MAX_MASTERS;
+}
+
 /* Signed with the cluster's key: what is said before there is a session. */
 #define FDP_HANDSHAKE (1u << FDP_JOIN | 1u << FDP_WELCOME | 1u << FDP_REFUSE | 1u << FDP_BEACON)
 
@@ -70,7 +81,7 @@ struct fdp_header {
 	bool group;      /* from the master: sent to the group; from a node: it hears the group */
 	bool again;      /* this fragment was sent before */
 	uint8_t to;      /* one more than the node that it is for; 0: all, the master, or a handshake */
-	uint16_t sender; /* node index, or FDP_SENDER_MASTER */
+	uint16_t sender; /* node index, or fdp_master_sender */
 	uint16_t payload_len;
 	/* Fragment; from count on it is one of `parity` parity fragments of the message. */
 	uint16_t index, count, parity;

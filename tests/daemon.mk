@@ -64,7 +64,7 @@ check_PROGRAMS += tests/unit/test_master_state
 TESTS += tests/unit/test_master_state
 tests_unit_test_master_state_SOURCES = tests/unit/test_master_state.c tests/unit/unit.h
 tests_unit_test_master_state_CFLAGS = $(TEST_CFLAGS)
-tests_unit_test_master_state_LDADD = daemon/libgdaemon.a $(PROTOCOL_LIBS) $(RENDERER_LIBS) \
+tests_unit_test_master_state_LDADD = daemon/libgdaemon.a $(TRACKING_LIBS) $(PROTOCOL_LIBS) $(RENDERER_LIBS) \
 	$(CMOCKA_LIBS)
 
 # Real daemons over UDP on loopback; they skip (77) where there is no OpenGL 4.5.
@@ -89,10 +89,12 @@ dist_check_SCRIPTS += tests/loopback/forged.sh
 TESTS += tests/loopback/forged.sh
 dist_check_SCRIPTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh \
 	tests/loopback/group.sh tests/loopback/share_survives.sh tests/loopback/kills.sh \
-	tests/loopback/barrier.sh tests/loopback/faults.sh tests/loopback/pace.sh
+	tests/loopback/barrier.sh tests/loopback/faults.sh tests/loopback/pace.sh \
+	tests/loopback/standby.sh
 TESTS += tests/loopback/frames.sh tests/loopback/survive.sh tests/loopback/hostile.sh \
 	tests/loopback/group.sh tests/loopback/share_survives.sh tests/loopback/kills.sh \
-	tests/loopback/barrier.sh tests/loopback/faults.sh tests/loopback/pace.sh
+	tests/loopback/barrier.sh tests/loopback/faults.sh tests/loopback/pace.sh \
+	tests/loopback/standby.sh
 EXTRA_DIST += tests/loopback/room.sh tests/loopback/room.cave.in tests/loopback/cell.scene
 
 check_PROGRAMS += tests/unit/test_trackers

@@ -33,6 +33,7 @@ PROTOCOL_TESTS = \
 	tests/unit/test_share \
 	tests/unit/test_share_hostile \
 	tests/unit/test_share_weather \
+	tests/unit/test_standby \
 	tests/unit/test_trust \
 	tests/unit/test_swap \
 	tests/unit/test_way \
@@ -95,6 +96,10 @@ tests_unit_test_share_hostile_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_share_weather_SOURCES = tests/unit/test_share_weather.c $(SHARE_ROOM_SOURCES)
 tests_unit_test_share_weather_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_share_weather_LDADD = $(PROTOCOL_TEST_LDADD)
+tests_unit_test_standby_SOURCES = tests/unit/test_standby.c tests/unit/masters_sim.c \
+	tests/unit/masters_sim.h tests/unit/unit.h
+tests_unit_test_standby_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_unit_test_standby_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_trust_SOURCES = tests/unit/test_trust.c $(CLUSTER_SIM_SOURCES)
 tests_unit_test_trust_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_trust_LDADD = $(PROTOCOL_TEST_LDADD)

@@ -49,6 +49,28 @@ static void pace_of(struct json_object *node, char text[PACE_MAX])
 		snprintf(text, PACE_MAX, "%s", report_text(node, "pace"));
 }
 
+/* Of a room with several masters. */
+static void print_masters(struct json_object *status)
+{
+	struct json_object *masters = report_member(status, "masters");
+	size_t count = json_object_is_type(masters, json_type_array)
+			       ? json_object_array_length(masters) : 0;
+
+	for (size_t i = 0; i < count; i++) {
+		struct json_object *master = json_object_array_get_idx(masters, i);
+
+		printf("%-14s %-24s %s", report_text(master, "name"), report_text(master, "address"),
+		       report_text(master, "state"));
+		if (report_member(master, "acked"))
+			printf(", has frame %lld", (long long)report_count(master, "acked"));
+		printf("\n");
+	}
+	if (report_member(status, "followed_ms_ago"))
+		printf("this one has frame %lld, %.0f ms old\n",
+		       (long long)report_count(status, "followed_frame"),
+		       report_number(status, "followed_ms_ago"));
+}
+
 static void print_nodes(struct json_object *status)
 {
 	char pace[PACE_MAX];
@@ -207,9 +229,15 @@ static void print_status(struct json_object *status)
 {
 	bool running = json_object_get_boolean(report_member(status, "running"));
 
+	const char *role = report_text(status, "role");
+
 	printf("%s, %s: %s, frame %lld, up %.0f s\n", report_text(status, "layout"),
-	       report_text(status, "scene"), running ? "running" : "waiting for nodes",
+	       report_text(status, "scene"),
+	       strcmp(role, "standby") == 0 || strcmp(role, "calling") == 0 ? role
+	       : running						      ? "running"
+									      : "waiting for nodes",
 	       (long long)report_count(status, "frame"), report_number(status, "uptime_s"));
+	print_masters(status);
 	print_nodes(status);
 	print_tracking(status);
 	printf("\n");

@@ -60,8 +60,9 @@ static void fuzz_master_event(void *ctx, const struct fdp_master_event *event)
 		abort();
 }
 
-static void fuzz_node_send(void *ctx, const uint8_t *bytes, size_t len)
+static void fuzz_node_send(void *ctx, int to, const uint8_t *bytes, size_t len)
 {
+	(void)to;
 	fuzz_queue(ctx, -1, bytes, len);
 }
 

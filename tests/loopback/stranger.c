@@ -23,10 +23,11 @@ static void throw_at(struct thrower *t, const uint8_t *bytes, size_t len)
 	sendto(t->fd, bytes, len, 0, (const struct sockaddr *)&t->to, sizeof t->to);
 }
 
-static void keep(void *ctx, const uint8_t *bytes, size_t len)
+static void keep(void *ctx, int to, const uint8_t *bytes, size_t len)
 {
 	struct thrower *t = ctx;
 
+	(void)to;
 	t->len = len < sizeof t->last ? len : sizeof t->last;
 	memcpy(t->last, bytes, t->len);
 }

@@ -166,6 +166,11 @@ static void step(struct sim *s)
 	}
 	if (!s->master)
 		return;
+	if (s->outranked) { /* a session above is the daemon's to choose */
+		s->session = s->outranked + 1;
+		s->outranked = 0;
+		fdp_master_renew(s->master, s->session, s->state, s->frame);
+	}
 	if (s->now_ns >= s->master_wake_ns) {
 		fdp_master_tick(s->master, s->now_ns);
 		assert_true(fdp_master_next(s->master) > s->now_ns);

@@ -79,7 +79,7 @@ struct sim {
 
 	struct fdp_master *master; /* NULL: dead */
 	int64_t master_wake_ns;    /* as a node's wake_ns */
-	uint64_t session;
+	uint64_t session, outranked; /* outranked: session that a node has been in, above ours; 0: none */
 	size_t node_count;
 	struct sim_node nodes[FDP_MAX_NODES];
 	char names[FDP_MAX_NODES][FDP_NAME_BYTES];

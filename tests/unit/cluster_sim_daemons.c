@@ -39,6 +39,8 @@ void sim_master_event(void *ctx, const struct fdp_master_event *e)
 	case FDP_MASTER_EVICTED: s->evicted++; break;
 	case FDP_MASTER_PACE: s->paced[e->pace]++; break;
 	case FDP_MASTER_MISMATCH: s->mismatches++; break;
+	case FDP_MASTER_FOLLOWED: break;
+	case FDP_MASTER_OUTRANKED: s->outranked = e->theirs; break;
 	case FDP_MASTER_WAY:
 		s->ways++;
 		s->way = e->way;

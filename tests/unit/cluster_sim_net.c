@@ -128,10 +128,11 @@ void sim_master_send(void *ctx, int to, const uint8_t *bytes, size_t len)
 	}
 }
 
-void sim_node_send(void *ctx, const uint8_t *bytes, size_t len)
+void sim_node_send(void *ctx, int to, const uint8_t *bytes, size_t len)
 {
 	struct sim_node *n = ctx;
 
+	assert_int_equal(to, 0); /* there is one master */
 	assert_true(len <= n->sim->datagram_max);
 	carry(n->sim, -1, n->index, bytes, len, 0);
 }

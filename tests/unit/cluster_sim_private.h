@@ -9,7 +9,7 @@ double sim_uniform(struct sim *s);
 
 /* cluster_sim_net.c: a datagram goes out; ctx is the sim, or the sim_node. */
 void sim_master_send(void *ctx, int to, const uint8_t *bytes, size_t len);
-void sim_node_send(void *ctx, const uint8_t *bytes, size_t len);
+void sim_node_send(void *ctx, int to, const uint8_t *bytes, size_t len);
 /* The datagram that arrives first, of packet_count > 0; its bytes are the caller's. */
 struct sim_packet sim_packet_pop(struct sim *s);
 

@@ -36,7 +36,7 @@ static void open_pair(struct pair *p, uint64_t salt)
 	p->nodes[0].port = (uint16_t)(port + 1);
 	p->nodes[1].port = (uint16_t)(port + 2);
 	p->layout.network.mtu = 1500;
-	assert_int_equal(net_open_master(&p->master, &p->layout), GR_OK);
+	assert_int_equal(net_open_master(&p->master, &p->layout, 0), GR_OK);
 	assert_int_equal(net_open_node(&p->node, &p->layout, 0), GR_OK);
 	assert_int_equal(loop_create(&p->loop), GR_OK);
 	assert_int_equal(faults_create(&p->faults, p->loop, net_datagram_max(&p->layout.network), salt), GR_OK);

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/result.h"
+#include "daemon/live_source.h"
 #include "daemon/master_state.h"
 #include "daemon/node_frame.h"
 
@@ -293,6 +294,43 @@ static void wrong_settings_change_nothing(void **state)
 	assert_memory_equal(&before, &f->state.settings, sizeof before);
 }
 
+/* What a standby adopts gives the same parameters again, with time gone on. */
+static void another_goes_on(void **state)
+{
+	struct fixture *f = *state;
+	struct master_state other;
+	struct live_source live;
+	struct param_state *theirs;
+	char *const exposure[] = { (char *)"exposure", (char *)"7" };
+	char *const lamp[] = { (char *)"lamp", (char *)"ceiling", (char *)"off" };
+	char why[200];
+
+	assert_int_equal(master_settings_set(&f->state.settings, &f->scene, exposure, 2, why, sizeof why), GR_OK);
+	assert_int_equal(master_settings_set(&f->state.settings, &f->scene, lamp, 3, why, sizeof why), GR_OK);
+	f->state.T_scene_room.p[0] = 4;
+	f->input.buttons = 4096;
+	f->input.time_ns = 5 * GR_NS_PER_S;
+	assert_int_equal(master_state_frame(&f->state, &f->input, true, f->params, 9, &f->refused), GR_OK);
+	master_state_init(&other, &f->layout, &f->scene);
+	master_state_adopt(&other, f->params);
+	assert_int_equal(other.epoch, 9);
+	assert_int_equal(param_state_create(&theirs), GR_OK);
+	param_state_copy(theirs, f->params);
+	assert_int_equal(master_state_frame(&other, &f->input, false, theirs, 10, &f->refused), GR_OK);
+	/* Not one parameter has changed. */
+	assert_int_equal(param_state_hash(theirs, 0), param_state_hash(f->params, 0));
+	param_state_destroy(&theirs);
+
+	live_source_init(&live, &f->layout, &f->scene, NULL, false);
+	live_source_adopt(&live, f->params, 14, 100, 100 + GR_NS_PER_S);
+	assert_int_equal(live.base_ns + (100 + GR_NS_PER_S) - live.start_ns, 6 * GR_NS_PER_S);
+	assert_int_equal(live.last_time_ns, 5 * GR_NS_PER_S);
+	f->layout.rates.frame_hz = 60;
+	live_source_init(&live, &f->layout, &f->scene, NULL, true);
+	live_source_adopt(&live, f->params, 120, 100, 100 + GR_NS_PER_S);
+	assert_int_equal(live.base_ns + 2 * GR_NS_PER_S, 6 * GR_NS_PER_S); /* frame 120 at 60 Hz */
+}
+
 static void parameters_become_a_frame(void **state)
 {
 	struct fixture *f = *state;
@@ -355,7 +393,7 @@ int main(void)
 {
 #define WITH(test) cmocka_unit_test_setup_teardown(test, setup, teardown)
 	const struct CMUnitTest tests[] = {
-		WITH(scene_file_becomes_parameters),
+		WITH(another_goes_on), WITH(scene_file_becomes_parameters),
 		WITH(what_does_not_change_keeps_its_version),
 		WITH(lamps_follow_their_mounts),
 		WITH(orbit_is_a_circle_for_any_time),

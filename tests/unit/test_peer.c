@@ -10,21 +10,23 @@
 #define LIVE FDP_PEER_LIVE
 #define LATE FDP_PEER_LATE
 #define DEAD FDP_PEER_DEAD
+#define FOLLOWS FDP_PEER_FOLLOWS
 
 /* The table of docs/protocol.md. */
 static const enum fdp_peer_state table[][FDP_PEER_EVENTS] = {
-	/*           joins    commits readies misses expires leaves */
-	[ABSENT]  = { JOINING, ABSENT, ABSENT, ABSENT, ABSENT, ABSENT },
-	[JOINING] = { JOINING, LIVE, JOINING, JOINING, DEAD, ABSENT },
-	[LIVE]    = { JOINING, LIVE, LIVE, LATE, DEAD, ABSENT },
-	[LATE]    = { JOINING, LATE, LIVE, LATE, DEAD, ABSENT },
-	[DEAD]    = { JOINING, DEAD, DEAD, DEAD, DEAD, DEAD },
+	/*           joins    commits readies misses expires leaves followed */
+	[ABSENT]  = { JOINING, ABSENT, ABSENT, ABSENT, ABSENT, ABSENT, ABSENT },
+	[JOINING] = { JOINING, LIVE, JOINING, JOINING, DEAD, ABSENT, FOLLOWS },
+	[LIVE]    = { JOINING, LIVE, LIVE, LATE, DEAD, ABSENT, LIVE },
+	[LATE]    = { JOINING, LATE, LIVE, LATE, DEAD, ABSENT, LATE },
+	[DEAD]    = { JOINING, DEAD, DEAD, DEAD, DEAD, DEAD, DEAD },
+	[FOLLOWS] = { JOINING, FOLLOWS, FOLLOWS, FOLLOWS, DEAD, ABSENT, FOLLOWS },
 };
 
 static void every_step(void **state)
 {
 	(void)state;
-	for (int s = ABSENT; s <= DEAD; s++) {
+	for (int s = ABSENT; s <= FOLLOWS; s++) {
 		for (int e = 0; e < FDP_PEER_EVENTS; e++)
 			assert_int_equal(fdp_peer_next((enum fdp_peer_state)s, (enum fdp_peer_event)e),
 					 table[s][e]);

@@ -95,7 +95,7 @@ static void arrival(void **state)
 
 	(void)state;
 	make_room(&room, "127.0.0.1");
-	assert_int_equal(net_open_master(&master, &room.layout), GR_OK);
+	assert_int_equal(net_open_master(&master, &room.layout, 0), GR_OK);
 	assert_int_equal(net_open_node(&node, &room.layout, 0), GR_OK);
 	/* A kernel that nobody asked for stamps before begins with them a little later. */
 	for (int i = 0; i < 20 && !stamped; i++) {
@@ -114,6 +114,51 @@ static void arrival(void **state)
 	net_close(&node);
 }
 
+/* Masters hear each other and all nodes; what is for all nodes no master hears. */
+static void several_masters(void **state)
+{
+	static struct heard h;
+	struct layout_standby standby[2] = { { .address = (char *)"127.0.0.1" }, { .address = (char *)"127.0.0.1" } };
+	struct room room;
+	struct net *masters[3], *node;
+	struct net_address address;
+
+	(void)state;
+	make_room(&room, "127.0.0.1");
+	for (uint16_t i = 0; i < 2; i++)
+		standby[i].port = free_port("127.0.0.1");
+	room.layout.standby = standby;
+	room.layout.standby_count = 2;
+	assert_int_equal(net_masters(&room.layout), 3);
+	for (size_t i = 0; i < 3; i++)
+		assert_int_equal(net_open_master(&masters[i], &room.layout, i), GR_OK);
+	assert_int_equal(net_open_node(&node, &room.layout, 0), GR_OK);
+	for (int i = 0; i < 3; i++) { /* to each, and from each to the next */
+		net_send(node, i, (const uint8_t *)"n", 1);
+		net_send(masters[(i + 1) % 3], NODES + i, (const uint8_t *)"master", 6);
+		net_send(masters[i], NET_TO_ALL, (const uint8_t *)"all", 3);
+	}
+	net_send(node, NET_TO_ALL, (const uint8_t *)"nn", 2);
+	net_send(node, 3, (const uint8_t *)"nobody", 6);
+	net_send(masters[0], NODES + 3, (const uint8_t *)"nobody", 6);
+	net_flush(node);
+	for (int i = 0; i < 3; i++)
+		net_flush(masters[i]);
+	for (int i = 0; i < 3; i++)
+		assert_int_equal(listen_at(masters[i], 0, &h), 3);
+	assert_int_equal(listen_at(node, 0, &h), 3);
+	assert_true(net_peer(node, &h.from) >= 0);
+	assert_int_equal(net_master_address(&room.layout, 2, &address), GR_OK);
+	assert_int_equal(net_peer(masters[0], &address), NODES + 2);
+	assert_int_equal(net_peer(node, &address), 2);
+	assert_true(net_is_ours(&address)); /* though its port is taken */
+	assert_int_equal(net_address_parse("192.0.2.7", 1, &address), GR_OK);
+	assert_false(net_is_ours(&address));
+	for (int i = 0; i < 3; i++)
+		net_close(&masters[i]);
+	net_close(&node);
+}
+
 static void unicast_over(const char *address)
 {
 	static struct heard h;
@@ -122,7 +167,7 @@ static void unicast_over(const char *address)
 	uint8_t bytes[1472] = { 1, 2, 3 };
 
 	make_room(&room, address);
-	assert_int_equal(net_open_master(&master, &room.layout), GR_OK);
+	assert_int_equal(net_open_master(&master, &room.layout, 0), GR_OK);
 	for (int i = 0; i < NODES; i++)
 		assert_int_equal(net_open_node(&nodes[i], &room.layout, (size_t)i), GR_OK);
 	/* To one: nobody else hears it. To all: each once. */
@@ -194,7 +239,7 @@ static void group_over(enum layout_cast cast, const char *group)
 	room.layout.network.group = (char *)group;
 	room.layout.network.group_port = free_port("127.0.0.1");
 	room.layout.network.interface = (char *)"lo";
-	assert_int_equal(net_open_master(&master, &room.layout), GR_OK);
+	assert_int_equal(net_open_master(&master, &room.layout, 0), GR_OK);
 	for (int i = 0; i < NODES; i++)
 		assert_int_equal(net_open_node(&nodes[i], &room.layout, (size_t)i), GR_OK);
 	assert_true(net_has_group(master));
@@ -247,7 +292,7 @@ static void group_as_the_layout_says(void **state)
 	for (int i = 0; i < 2; i++) {
 		room.layout.network.loop = i;
 		room.layout.network.ttl = 3 + i;
-		assert_int_equal(net_open_master(&master, &room.layout), GR_OK);
+		assert_int_equal(net_open_master(&master, &room.layout, 0), GR_OK);
 		net_fds(master, fds);
 		assert_int_equal(getsockopt(fds[0], IPPROTO_IP, IP_MULTICAST_LOOP, &value, &len), 0);
 		assert_int_equal(value, i);
@@ -296,7 +341,7 @@ static void oversized_is_counted(void **state)
 	large = room;
 	large.layout.nodes = large.nodes;
 	large.layout.network.mtu = 9000;
-	assert_int_equal(net_open_master(&master, &room.layout), GR_OK);
+	assert_int_equal(net_open_master(&master, &room.layout, 0), GR_OK);
 	assert_int_equal(net_open_node(&node, &large.layout, 0), GR_OK);
 	net_send(node, 0, bytes, sizeof bytes);
 	net_send(node, 0, bytes, 10);
@@ -322,21 +367,21 @@ static void wrong_networks_are_refused(void **state)
 	(void)state;
 	gr_log_set_level((enum gr_log_level)0);
 	make_room(&room, "127.0.0.1");
-	assert_int_equal(net_open_master(&first, &room.layout), GR_OK);
-	assert_int_equal(net_open_master(&second, &room.layout), GR_ERR_IO); /* port taken */
+	assert_int_equal(net_open_master(&first, &room.layout, 0), GR_OK);
+	assert_int_equal(net_open_master(&second, &room.layout, 0), GR_ERR_IO); /* port taken */
 	assert_null(second);
 	net_close(&first);
 	room.nodes[1].address = (char *)"cave-left.example";
-	assert_int_equal(net_open_master(&first, &room.layout), GR_ERR_CONFIG);
+	assert_int_equal(net_open_master(&first, &room.layout, 0), GR_ERR_CONFIG);
 	make_room(&room, "127.0.0.1");
 	room.layout.network.master_address = (char *)"192.0.2.1"; /* not of this machine */
-	assert_int_equal(net_open_master(&first, &room.layout), GR_ERR_IO);
+	assert_int_equal(net_open_master(&first, &room.layout, 0), GR_ERR_IO);
 	make_room(&room, "127.0.0.1");
 	room.layout.network.cast = LAYOUT_MULTICAST;
 	room.layout.network.group = (char *)"239.255.71.4";
 	room.layout.network.group_port = 4000;
 	room.layout.network.interface = (char *)"no-such-if0";
-	assert_int_equal(net_open_master(&first, &room.layout), GR_ERR_CONFIG);
+	assert_int_equal(net_open_master(&first, &room.layout, 0), GR_ERR_CONFIG);
 	assert_null(first);
 	gr_log_set_level(GR_LOG_ERROR);
 }
@@ -362,7 +407,7 @@ static void addresses_as_text(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(arrival), cmocka_unit_test(unicast_ipv4),
+		cmocka_unit_test(arrival), cmocka_unit_test(several_masters), cmocka_unit_test(unicast_ipv4),
 		cmocka_unit_test(unicast_ipv6),
 		cmocka_unit_test(multicast_reaches_all),
 		cmocka_unit_test(broadcast_reaches_all),

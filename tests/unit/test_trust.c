@@ -76,12 +76,13 @@ static void count_from_master(void *ctx, int to, const uint8_t *bytes, size_t le
 	a->out += len;
 }
 
-static void count_from_node(void *ctx, const uint8_t *bytes, size_t len)
+static void count_from_node(void *ctx, int to, const uint8_t *bytes, size_t len)
 {
 	struct sim_node *n = ctx;
 	struct attack *a = n->sim->tamper_ctx;
 
 	(void)bytes;
+	(void)to;
 	a->out += len;
 }
 
@@ -268,6 +269,9 @@ static void compare(struct attack *a)
 		before->asked = after->asked;
 		before->asked_ns = after->asked_ns;
 		before->hinted_ns = after->hinted_ns;
+		before->call_session = after->call_session;
+		before->call_heard_ns = after->call_heard_ns;
+		before->call_master = after->call_master;
 		assert_memory_equal(before, after, sizeof *after);
 		assert_int_equal(a->hashes[i], param_state_hash(after->state, 0));
 	}

@@ -180,8 +180,8 @@ static void each_field(void **state)
 	SAYS(FDP_BAD_FORMAT, h.group = true; h.to = 3); /* to all and to one */
 	assert_int_equal(sealed(ack_header(), other_key, 10), FDP_BAD_AUTH);
 	SAYS(FDP_BAD_VERSION, h.version = 2);
-	SAYS(FDP_BAD_VERSION, h.version = 3);
-	SAYS(FDP_BAD_VERSION, h.version = 5);
+	SAYS(FDP_BAD_VERSION, h.version = FDP_VERSION - 1);
+	SAYS(FDP_BAD_VERSION, h.version = FDP_VERSION + 1);
 	SAYS(FDP_BAD_VERSION, h.version = 0);
 	SAYS(FDP_GOOD, h.version = 1; h.kind = FDP_JOIN); /* the form of JOIN never changes */
 	SAYS(FDP_BAD_SESSION, h.session = 78);
@@ -316,7 +316,7 @@ struct sample {
 
 static const struct sample samples[] = {
 	{ "join", FDP_JOIN_BYTES, false,
-	  { .join = { FDP_VERSION, 3, { 1, 2 }, { 3 }, { 4 }, { 5 }, 6, "left", 7, 2180, 510, 20, 13, { 1, 2, 3 } } },
+	  { .join = { FDP_VERSION, 3, { 1, 2 }, { 3 }, { 4 }, { 5 }, 6, "left", 7, 2180, 510, 99, 20, 13, { 1, 2, 3 } } },
 	  enc_join, dec_join },
 	{ "welcome", 64, false, { .welcome = { { 1 }, { 2 }, { 3 }, UINT64_C(1) << 40, 33000, 4125 } },
 	  enc_welcome, dec_welcome },

@@ -24,7 +24,7 @@ bool cluster_master_open(struct cluster_master *master, struct fdp_master_params
 	params.datagram_max = net_datagram_max(&c->layout.network);
 	params.multicast = c->layout.network.cast == LAYOUT_MULTICAST;
 	params.swap_lead_most_ns = c->period_ns / 4;
-	return net_open_master(&master->net, &c->layout) == GR_OK &&
+	return net_open_master(&master->net, &c->layout, 0) == GR_OK &&
 	       fdp_master_create(&master->fdp, &params, &ops) == GR_OK &&
 	       param_state_create(&master->state) == GR_OK;
 }
@@ -36,10 +36,11 @@ void cluster_master_close(struct cluster_master *master)
 	net_close(&master->net);
 }
 
-static void node_send(void *ctx, const uint8_t *bytes, size_t len)
+static void node_send(void *ctx, int to, const uint8_t *bytes, size_t len)
 {
 	struct cluster_node *n = ctx;
 
+	(void)to;
 	net_send(n->net, 0, bytes, len);
 }
 
