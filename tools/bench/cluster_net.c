@@ -57,7 +57,7 @@ bool cluster_net_leave(void)
 bool cluster_net_connect(unsigned end, pid_t pid)
 {
 	return ip("link add p%u type veth peer name eth0 netns %d", end, (int)pid) &&
-	       ip("link set p%u master br0", end) && ip("link set p%u up", end);
+	       ip("link set p%u master br0", end) && ip("link set p%u gso_max_segs 1 up", end);
 }
 
 /*
