@@ -20,8 +20,8 @@
 #define PARITY 8
 #define SPACE (64u << 20)
 #define SOCKET_BYTES (4u << 20)
-#define RATE_BITS_S 2e9 /* the way is a memory: its rate is to hold nothing back */
-#define TRIP_S 0.0005 /* its waits are counted in these */
+#define RATE_BITS_S 1e9
+#define TRIP_S 0.0002 /* its waits are counted in these */
 
 struct end {
 	NormInstanceHandle instance;
@@ -54,7 +54,7 @@ static void *open_end(const struct peer_place *place, unsigned parity)
 		return NULL;
 	e->update_bytes = place->update_bytes;
 	e->kept = place->sender ? malloc(KEPT * place->update_bytes) : NULL;
-	e->instance = NormCreateInstance(false);
+	e->instance = NormCreateInstance(true);
 	e->session = NormCreateSession(e->instance, place->cluster->bench->group, place->port, place->node + 1);
 	if (e->session == NORM_SESSION_INVALID || (place->sender && !e->kept)) {
 		fprintf(stderr, "NORM: no session on %s:%u\n", place->cluster->bench->group, place->port);
