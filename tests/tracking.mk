@@ -44,6 +44,17 @@ tests_unit_test_hydra_SOURCES = tests/unit/test_hydra.c tests/unit/mock_hydra.c 
 tests_unit_test_hydra_CFLAGS = $(MOCK_CFLAGS)
 tests_unit_test_hydra_LDADD = $(MOCK_LIBS)
 
+# A master with mocked devices, and four nodes.
+if HAVE_UMOCKDEV
+check_PROGRAMS += tests/loopback/bed
+endif
+tests_loopback_bed_SOURCES = tests/loopback/bed.c tests/unit/mock_hydra.c tests/unit/mock_hydra.h \
+	tests/unit/hydra_bytes.h $(MOCK_HID_SOURCES)
+tests_loopback_bed_CFLAGS = $(MOCK_CFLAGS)
+tests_loopback_bed_LDADD = $(MOCK_LIBS)
+dist_check_SCRIPTS += tests/loopback/hydra.sh
+TESTS += tests/loopback/hydra.sh
+
 EXTRA_DIST += \
 	tests/fuzz/fuzz_hydra.c \
 	tests/fuzz/corpus/hydra/docked \

@@ -10,10 +10,13 @@
 #include <termios.h>
 #include <unistd.h>
 
+#define WORDS 64 /* of a command line */
+
 UMockdevTestbed *mock_begin(char **argv)
 {
 	const char *preload = getenv("LD_PRELOAD"), *asan = getenv("ASAN_OPTIONS");
-	char options[1024];
+	char options[1024], *words[WORDS] = { 0 };
+	int count = 0;
 
 	if (preload && strstr(preload, "umockdev"))
 		return umockdev_testbed_new();
@@ -23,7 +26,9 @@ UMockdevTestbed *mock_begin(char **argv)
 	setenv("ASAN_OPTIONS", options, 1);
 	/* The path of a socket below it must fit into a socket's address. */
 	setenv("TMPDIR", "/tmp", 1);
-	execlp("umockdev-wrapper", "umockdev-wrapper", argv[0], (char *)NULL);
+	for (words[count++] = (char *)"umockdev-wrapper"; *argv && count < WORDS - 1; argv++)
+		words[count++] = *argv;
+	execvp(words[0], words);
 	printf("skipped: no umockdev-wrapper\n");
 	exit(77);
 }
