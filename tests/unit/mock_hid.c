@@ -166,6 +166,16 @@ void mock_hid_push(struct mock_hid *h, const uint8_t *bytes, size_t len)
 	pthread_mutex_unlock(&h->lock);
 }
 
+size_t mock_hid_waiting(struct mock_hid *h)
+{
+	size_t count;
+
+	pthread_mutex_lock(&h->lock);
+	count = h->count;
+	pthread_mutex_unlock(&h->lock);
+	return count;
+}
+
 static void name_paths(struct mock_hid *h)
 {
 	const struct mock_hid_params *p = &h->params;

@@ -41,6 +41,8 @@ struct mock_hid;
 struct mock_hid *mock_hid_plug(UMockdevTestbed *bed, const struct mock_hid_params *params);
 /* An input report arrives; as with the kernel, at most 64 wait, and the oldest gives way. */
 void mock_hid_push(struct mock_hid *hid, const uint8_t *report, size_t len);
+/* Reports that nobody has read yet. */
+size_t mock_hid_waiting(struct mock_hid *hid);
 /* last: the USB device goes, too. What is pushed after goes nowhere. */
 void mock_hid_unplug(struct mock_hid *hid, bool last);
 /* After it was unplugged and every client has closed it. *hid may be NULL; it is after. */

@@ -5,10 +5,15 @@
 #include "base/result.h"
 #include "tests/unit/hydra_bytes.h"
 #include "tests/unit/mock_hydra.h"
+#include "tracking/hid.h"
 #include "tracking/hotplug.h"
 #include "tracking/hydra.h"
 
+#include <grp.h>
 #include <poll.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 static UMockdevTestbed *bed;
 
@@ -226,6 +231,87 @@ static void a_thread_of_its_own(void **state)
 	await(f, TRACK_ABSENT);
 }
 
+/* Left, then right of the same report, and each report the last one's successor. */
+static void take_in_order(struct fixture *f, int *read)
+{
+	struct track_report r;
+
+	while (track_device_take(f->device, &f->reader, &r, 1) == 1) {
+		const float x_m = 0.001f * (float)(100 + *read / 2 % 400);
+
+		assert_int_equal(r.sensor, *read % 2);
+		assert_true(fabsf(r.T_base_sensor.p[0] - (r.sensor ? x_m : -x_m)) < 1e-6f);
+		++*read;
+	}
+}
+
+/*
+ * 1000 a second, and none is lost, merged or out of order. The pace is left
+ * where the node is half full, as the kernel would drop what it cannot keep.
+ */
+static void none_is_lost_at_1000_a_second(void **state)
+{
+	struct fixture *f = *state;
+	const int count = getenv("GROTTO_LONG") ? 60000 : 2000;
+	const struct timespec ms = { 0, GR_NS_PER_MS };
+	const int64_t end_ns = gr_clock_now(&gr_clock_monotonic) + 600 * GR_NS_PER_S;
+	struct track_counters counters;
+	int read = 0;
+
+	mock_hydra_plug(&f->hydra, bed, 0, 1);
+	assert_int_equal(track_device_start(f->device), GR_OK);
+	await(f, TRACK_RUNNING);
+	for (int i = 0; i < count; i++) {
+		while (mock_hid_waiting(f->hydra.reports) > 32)
+			nanosleep(&ms, NULL);
+		mock_hydra_say(&f->hydra, (uint8_t)i, 100 + i % 400, 0, -100);
+		nanosleep(&ms, NULL);
+		take_in_order(f, &read);
+	}
+	while (read < 2 * count) {
+		assert_true(gr_clock_now(&gr_clock_monotonic) < end_ns);
+		nanosleep(&ms, NULL);
+		take_in_order(f, &read);
+	}
+	track_device_counters(f->device, &counters);
+	assert_int_equal(read, 2 * count);
+	assert_int_equal(counters.reports, 2 * count);
+	assert_int_equal(counters.missed, 0);
+	assert_int_equal(f->reader.missed, 0);
+	printf("# %d reports of two wands, 1000 a second: none lost, merged or out of order\n",
+	       count);
+}
+
+/* What a user without the udev rule sees. Root may open anything, so somebody else tries. */
+static void denied_names_the_rule(void **state)
+{
+	struct fixture *f = *state;
+	struct track_hid_node nodes[4];
+	char why[TRACK_WHY];
+	hid_device *opened;
+	int status;
+	pid_t child;
+
+	mock_hydra_plug(&f->hydra, bed, 0, 1);
+	assert_int_equal(track_hid_list(0x1532, 0x0300, nodes, 4), 2);
+	child = fork();
+	if (child == 0) {
+		if (geteuid() == 0 && (setgroups(0, NULL) || setgid(65534) || setuid(65534)))
+			_exit(77);
+		/* Who is not root is kept out by the mode of his own node. */
+		(void)chmod(nodes[0].path, 0);
+		_exit(track_hid_open(&nodes[0], &opened, why, sizeof why) == TRACK_DENIED &&
+				      strstr(why, "70-grotto.rules")
+			      ? 0
+			      : 1);
+	}
+	assert_int_equal(waitpid(child, &status, 0), child);
+	assert_true(WIFEXITED(status));
+	if (WEXITSTATUS(status) == 77)
+		skip();
+	assert_int_equal(WEXITSTATUS(status), 0);
+}
+
 static void of_two_the_second_is_taken(void **state)
 {
 	struct fixture *f = *state;
@@ -261,6 +347,8 @@ int main(int argc, char **argv)
 		TEST(udev_tells_of_it),
 		TEST(a_thread_of_its_own),
 		TEST(of_two_the_second_is_taken),
+		TEST(none_is_lost_at_1000_a_second),
+		TEST(denied_names_the_rule),
 	};
 	int failed;
 
