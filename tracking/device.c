@@ -110,6 +110,7 @@ static void open_now(struct track_device *d)
 	tell(d, state, why);
 	if (state == TRACK_RUNNING) {
 		d->is_open = true;
+		track_hotplug_destroy(&d->hotplug); /* nobody would read it */
 		d->back_off_ns = 0;
 		/* Another device, or the same after a pause: its clock may be another. */
 		track_clock_init(&d->times);
@@ -155,15 +156,15 @@ void track_device_turn(struct track_device *d, int timeout_ms)
 	int64_t left_ns;
 	int r;
 
-	/* Before the first look, so that nothing is plugged in unseen between the two. */
-	if (!d->status_stamp && d->ops->subsystem)
-		d->hotplug = track_hotplug_create(d->ops->subsystem);
 	if (d->is_open) {
 		r = d->ops->read(d, timeout_ms, why, sizeof why);
 		if (r < 0)
 			close_now(d, r == GR_ERR_IO ? TRACK_ABSENT : TRACK_FAILED, why);
 		return;
 	}
+	/* Before it is looked for, so that nothing is plugged in unseen between the two. */
+	if (!d->hotplug && d->ops->subsystem)
+		d->hotplug = track_hotplug_create(d->ops->subsystem);
 	left_ns = d->retry_ns - gr_clock_now(d->clock);
 	if (d->status_stamp && left_ns > 0)
 		wait_for_try(d, left_ns, timeout_ms);
