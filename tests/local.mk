@@ -6,6 +6,7 @@ include $(top_srcdir)/tests/config.mk
 include $(top_srcdir)/tests/protocol.mk
 include $(top_srcdir)/tests/tracking.mk
 include $(top_srcdir)/tests/networks.mk
+include $(top_srcdir)/tests/polhemus.mk
 include $(top_srcdir)/tests/record.mk
 include $(top_srcdir)/tests/gl.mk
 include $(top_srcdir)/tests/gi.mk

@@ -11,11 +11,18 @@ tracking_libgtracking_a_SOURCES = \
 	tracking/history.c \
 	tracking/hotplug.c tracking/hotplug.h \
 	tracking/hydra.h tracking/hydra_decode.c tracking/hydra_device.c \
+	tracking/liberty.c tracking/liberty.h \
+	tracking/polhemus.h tracking/polhemus_private.h tracking/polhemus_device.c \
+	tracking/polhemus_liberty.c tracking/polhemus_viper.c \
+	tracking/polhemus_reports.c tracking/polhemus_reports.h \
+	tracking/polhemus_stream.c tracking/polhemus_stream.h \
 	tracking/net.c tracking/net.h \
 	tracking/replay.c tracking/replay.h \
 	tracking/replay_parse.c \
 	tracking/report.c tracking/report.h \
 	tracking/sim.c tracking/sim.h \
 	tracking/source.c tracking/source.h \
-	tracking/text.c tracking/text.h
-tracking_libgtracking_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(UDEV_CFLAGS) $(HIDAPI_CFLAGS) -pthread
+	tracking/text.c tracking/text.h \
+	tracking/usb.c tracking/usb.h tracking/usb_private.h tracking/usb_pipe.c \
+	tracking/viper.c tracking/viper.h
+tracking_libgtracking_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(UDEV_CFLAGS) $(HIDAPI_CFLAGS) $(LIBUSB_CFLAGS) -pthread
