@@ -147,7 +147,14 @@ struct layout_test {
 };
 
 /* All after LAYOUT_TRACKER_REPLAY are devices, see docs/trackers.md. */
-enum layout_tracker_kind { LAYOUT_TRACKER_SIM, LAYOUT_TRACKER_REPLAY, LAYOUT_TRACKER_HYDRA };
+enum layout_tracker_kind {
+	LAYOUT_TRACKER_SIM,
+	LAYOUT_TRACKER_REPLAY,
+	LAYOUT_TRACKER_HYDRA,
+	LAYOUT_TRACKER_VIPER,
+	LAYOUT_TRACKER_LIBERTY,
+	LAYOUT_TRACKER_PATRIOT,
+};
 
 /* The simulated visitor, see tracking/sim.h for what each does. */
 struct layout_sim {
@@ -160,6 +167,15 @@ struct layout_sim {
 	uint32_t seed;
 	float walk_radius_m; /* how far from the start pose the visitor walks */
 	float walk_speed_m_s;
+};
+
+/* Polhemus' trackers, see tracking/polhemus.h. */
+struct layout_polhemus {
+	char *path; /* of the USB bus; NULL: any */
+	int rate_hz;
+	vec3 hemisphere; /* base's axes; all 0: the device's own */
+	bool follow;
+	bool filter;
 };
 
 enum layout_body { LAYOUT_HEAD, LAYOUT_WAND };
@@ -194,12 +210,15 @@ struct layout_tracker {
 	int64_t latency_ns; /* of the device's quickest report */
 	struct layout_frame room_base; /* T_room_base: where the device's frame is */
 	float scale; /* room metres per metre that the device says */
+	struct layout_polhemus polhemus;
 	struct layout_binding bindings[LAYOUT_MAX_BINDINGS];
 	size_t binding_count;
 	int line;
 };
 /* Whether it is a device, with bindings. */
 bool layout_tracker_is_device(const struct layout_tracker *tracker);
+/* Whether it is one of Polhemus', which the group of that name is for. */
+bool layout_tracker_is_polhemus(const struct layout_tracker *tracker);
 
 struct layout {
 	char *path; /* as given to layout_load */

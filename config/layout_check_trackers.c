@@ -111,6 +111,24 @@ static void not_used(struct options_reader *reader, const struct layout_file_tra
 		options_fault(reader, GR_DIAG_WARNING, entry->at, key, "not used: only %s", of);
 }
 
+static void check_polhemus(struct options_reader *reader, const struct layout_file_tracker *entry)
+{
+	static const int rates_hz[] = { 30, 60, 120, 240, 480, 960 };
+	const struct layout_polhemus *p = &entry->polhemus.polhemus;
+	bool known = entry->tracker.kind != LAYOUT_TRACKER_VIPER;
+
+	for (size_t i = 0; i < sizeof rates_hz / sizeof *rates_hz; i++)
+		known = known || p->rate_hz == rates_hz[i];
+	if (!known)
+		options_fault(reader, GR_DIAG_ERROR, entry->polhemus.at, "rate_hz",
+			      "a VIPER has no %d Hz; it has 30, 60, 120, 240, 480 and 960",
+			      p->rate_hz);
+	if (p->follow && p->hemisphere[0] == 0 && p->hemisphere[1] == 0 && p->hemisphere[2] == 0)
+		options_fault(reader, GR_DIAG_ERROR, entry->polhemus.at, "follow",
+			      "from where is not known; say in which half of space the sensors "
+			      "begin: hemisphere = [x, y, z]");
+}
+
 static void check_device(struct options_reader *reader, const struct layout_file *file, size_t i)
 {
 	const struct layout_file_tracker *entry = &file->trackers[i];
@@ -121,6 +139,8 @@ static void check_device(struct options_reader *reader, const struct layout_file
 			"missing; say what its sensors are on: bind = ( { body = \"head\"; } )");
 	for (size_t k = 0; k < entry->binding_count; k++)
 		check_binding(reader, file, i, k);
+	if (layout_tracker_is_polhemus(&entry->tracker))
+		check_polhemus(reader, entry);
 	not_used(reader, entry, "head", !entry->tracker.head,
 		 "sim and replay track bodies as a whole; bind says what a device tracks");
 	not_used(reader, entry, "wand", !entry->tracker.wand,
@@ -144,6 +164,9 @@ static void check_tracker(struct options_reader *reader, const struct layout_fil
 		 "kind = \"replay\" reads a log");
 	not_used(reader, entry, "sim", tracker->kind != LAYOUT_TRACKER_SIM && entry->sim.at,
 		 "kind = \"sim\" is simulated");
+	not_used(reader, entry, "polhemus",
+		 !layout_tracker_is_polhemus(tracker) && entry->polhemus.at,
+		 "kind = \"viper\", \"liberty\" and \"patriot\" are Polhemus'");
 	if (layout_tracker_is_device(tracker)) {
 		check_device(reader, file, i);
 		return;

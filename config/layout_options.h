@@ -86,6 +86,11 @@ struct layout_file_base {
 	float scale;
 };
 
+struct layout_file_polhemus {
+	const config_setting_t *at;
+	struct layout_polhemus polhemus;
+};
+
 struct layout_file_binding {
 	const config_setting_t *at;
 	struct layout_binding binding;
@@ -96,6 +101,7 @@ struct layout_file_tracker {
 	struct layout_tracker tracker;
 	struct layout_file_sim sim;
 	struct layout_file_base base;
+	struct layout_file_polhemus polhemus;
 	struct layout_file_binding *bindings;
 	size_t binding_count;
 };

@@ -5,6 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+bool layout_tracker_is_polhemus(const struct layout_tracker *tracker)
+{
+	return tracker->kind >= LAYOUT_TRACKER_VIPER && tracker->kind <= LAYOUT_TRACKER_PATRIOT;
+}
+
 bool layout_tracker_is_device(const struct layout_tracker *tracker)
 {
 	return tracker->kind > LAYOUT_TRACKER_REPLAY;
@@ -54,6 +59,8 @@ void layout_tracker_build(struct layout_tracker *out, struct layout_file_tracker
 	out->sim = from->sim.sim;
 	out->room_base = from->base.room_base;
 	out->scale = from->base.scale;
+	out->polhemus = from->polhemus.polhemus;
+	out->polhemus.path = take(&from->polhemus.polhemus.path);
 	make_pose(&out->room_base);
 	out->line = (int)config_setting_source_line(from->at);
 	out->binding_count = from->binding_count;
@@ -70,6 +77,7 @@ void layout_tracker_free(struct layout_tracker *tracker)
 {
 	free(tracker->file);
 	free(tracker->serial);
+	free(tracker->polhemus.path);
 	for (size_t i = 0; i < tracker->binding_count; i++) {
 		free(tracker->bindings[i].buttons);
 		free(tracker->bindings[i].axes);
@@ -90,6 +98,9 @@ void layout_tracker_fill(struct layout_file_tracker *out, const struct layout_tr
 		out->base.room_base.position[0] = NAN;
 	else /* what `bind` says; the keys are not a device's */
 		out->tracker.head = out->tracker.wand = true;
+	out->polhemus.polhemus = from->polhemus;
+	if (!layout_tracker_is_polhemus(from))
+		out->polhemus.polhemus.hemisphere[0] = NAN;
 	out->bindings = bindings;
 	out->binding_count = from->binding_count;
 	for (size_t i = 0; i < from->binding_count; i++)

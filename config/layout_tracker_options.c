@@ -1,7 +1,7 @@
 /* The layout's keys about trackers. */
 #include "config/layout_options.h"
 
-static const char *const kind_choices[] = { "sim", "replay", "hydra", NULL };
+static const char *const kind_choices[] = { "sim", "replay", "hydra", "viper", "liberty", "patriot", NULL };
 static const char *const body_choices[] = { "head", "wand", NULL };
 
 #define AT(type, member) .offset = offsetof(struct type, member)
@@ -48,6 +48,24 @@ static const struct option base_options[] = {
 	ANGLE("roll_deg", 180, layout_file_base, room_base.angles[2], "then how far it leans to its left"),
 	{ .key = "scale", .type = OPTION_FLOAT, .min = 0.001, .max = 1000, .standard = "1",
 	  AT(layout_file_base, scale), .help = "true length of what the device calls a metre" },
+	{ .key = NULL },
+};
+
+static const struct option polhemus_options[] = {
+	{ .key = "hemisphere", .type = OPTION_FLOAT, .count = 3, .min = -1, .max = 1,
+	  .standard = "0 0 0", AT(layout_file_polhemus, polhemus.hemisphere),
+	  .help = "direction from the source, in the axes of its base, to the half of space that the sensors are in; 0 0 0 as the device has it" },
+	{ .key = "rate_hz", .type = OPTION_INT, .min = 30, .max = 960, .standard = "240",
+	  .unit = "Hz", AT(layout_file_polhemus, polhemus.rate_hz),
+	  .help = "for viper: frames a second, 30, 60, 120, 240, 480 or 960; the others keep theirs" },
+	{ .key = "path", .type = OPTION_STRING, AT(layout_file_polhemus, polhemus.path),
+	  .help = "where it is plugged in, bus and ports as in /sys/bus/usb/devices, such as \"1-2.4\"; without it anywhere" },
+	{ .key = "follow", .type = OPTION_BOOL, .standard = "false",
+	  AT(layout_file_polhemus, polhemus.follow),
+	  .help = "for viper, with hemisphere: sensors begin in it and may go around the source then" },
+	{ .key = "filter", .type = OPTION_BOOL, .standard = "false",
+	  AT(layout_file_polhemus, polhemus.filter),
+	  .help = "whether the device's own filter stays as it is; else it is switched off" },
 	{ .key = NULL },
 };
 
@@ -104,6 +122,8 @@ const struct option layout_tracker_options[] = {
 	  .help = "for a device: how old its quickest report is when it arrives" },
 	{ .key = "base", .type = OPTION_GROUP, AT(layout_file_tracker, base), .group = base_options,
 	  .help = "for a device: where its frame is in the room" },
+	{ .key = "polhemus", .type = OPTION_GROUP, AT(layout_file_tracker, polhemus),
+	  .group = polhemus_options, .help = "for viper, liberty, patriot: how it measures" },
 	{ .key = "bind", .type = OPTION_LIST, .count = LAYOUT_MAX_BINDINGS,
 	  AT(layout_file_tracker, bindings), .size = sizeof(struct layout_file_binding),
 	  .count_offset = offsetof(struct layout_file_tracker, binding_count),

@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/result.h"
 #include "tracking/hydra.h"
+#include "tracking/polhemus.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -17,9 +18,31 @@ static int create_hydra(struct track_device **out, const struct layout_tracker *
 	return track_hydra_create(out, &params, &gr_clock_monotonic);
 }
 
+static int create_polhemus(struct track_device **out, const struct layout_tracker *tracker)
+{
+	const struct layout_polhemus *from = &tracker->polhemus;
+	const struct track_polhemus_params params = {
+		.model = tracker->kind == LAYOUT_TRACKER_VIPER	 ? TRACK_POLHEMUS_MODEL_VIPER :
+			 tracker->kind == LAYOUT_TRACKER_LIBERTY ? TRACK_POLHEMUS_MODEL_LIBERTY :
+								   TRACK_POLHEMUS_MODEL_PATRIOT,
+		.serial = tracker->serial,
+		.path = from->path,
+		.number = tracker->number,
+		.rate_hz = from->rate_hz,
+		.hemisphere = { from->hemisphere[0], from->hemisphere[1], from->hemisphere[2] },
+		.follow = from->follow,
+		.filter = from->filter,
+	};
+
+	return track_polhemus_create(out, &params, &gr_clock_monotonic);
+}
+
 /* Indexed by kind. */
 static int (*const create[])(struct track_device **, const struct layout_tracker *) = {
 	[LAYOUT_TRACKER_HYDRA] = create_hydra,
+	[LAYOUT_TRACKER_VIPER] = create_polhemus,
+	[LAYOUT_TRACKER_LIBERTY] = create_polhemus,
+	[LAYOUT_TRACKER_PATRIOT] = create_polhemus,
 };
 
 int tracker_device_create(struct track_device **out, const struct layout *layout,

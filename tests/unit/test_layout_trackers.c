@@ -197,6 +197,81 @@ static void a_device_needs_bindings(void **state)
 	gr_diag_finish(&diag);
 }
 
+static const char magnetic[] =
+	"trackers = ( { name = \"one\"; kind = \"viper\"; serial = \"V1\";\n"
+	"	polhemus = { path = \"1-2.4\"; rate_hz = 480; hemisphere = [0.0, -1.0, 0.5];\n"
+	"	  follow = true; filter = true; };\n"
+	"	bind = ( { body = \"head\"; } ); },\n"
+	"	{ name = \"two\"; kind = \"patriot\"; bind = ( { body = \"wand\"; sensor = \"2\"; } ); } );\n";
+
+static void a_polhemus_has_a_group_of_its_own(void **state)
+{
+	struct gr_diag diag = { 0 };
+	struct layout *layout = parse(magnetic, &diag), *again = NULL;
+	char *text = NULL;
+	size_t len = 0;
+	FILE *file = open_memstream(&text, &len);
+
+	(void)state;
+	unit_diag_print(&diag);
+	assert_non_null(layout);
+	assert_int_equal(layout_write(file, layout), GR_OK);
+	fclose(file);
+	assert_int_equal(layout_text_parse(text, &again, &diag), GR_OK);
+	assert_int_equal(diag.count, 0);
+	for (int i = 0; i < 2; i++) {
+		const struct layout *l = i ? again : layout;
+		const struct layout_polhemus *one = &l->trackers[0].polhemus;
+		const struct layout_polhemus *two = &l->trackers[1].polhemus;
+
+		assert_string_equal(one->path, "1-2.4");
+		assert_int_equal(one->rate_hz, 480);
+		assert_vector(one->hemisphere, 0, -1, 0.5);
+		assert_true(one->follow && one->filter);
+		assert_null(two->path);
+		assert_int_equal(two->rate_hz, 240);
+		assert_vector(two->hemisphere, 0, 0, 0);
+		assert_false(two->follow || two->filter);
+	}
+	layout_destroy(&layout);
+	layout_destroy(&again);
+	gr_diag_finish(&diag);
+	free(text);
+}
+
+static void faults_of_a_polhemus_are_named(void **state)
+{
+	static const struct {
+		const char *find, *replace, *key, *message;
+		enum gr_severity severity;
+	} wrong[] = {
+		{ "480", "100", "trackers[0].polhemus.rate_hz",
+		  "a VIPER has no 100 Hz; it has 30, 60, 120, 240, 480 and 960", GR_DIAG_ERROR },
+		{ "hemisphere = [0.0, -1.0, 0.5];", "", "trackers[0].polhemus.follow",
+		  "from where is not known; say in which half of space the sensors begin",
+		  GR_DIAG_ERROR },
+		{ "viper", "hydra", "trackers[0].polhemus",
+		  "not used: only kind = \"viper\", \"liberty\" and \"patriot\" are Polhemus'",
+		  GR_DIAG_WARNING },
+	};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+		char *text = unit_replace(magnetic, wrong[i].find, wrong[i].replace);
+		struct gr_diag diag = { 0 };
+		struct layout *layout = parse(text, &diag);
+
+		unit_diag_print(&diag);
+		assert_int_equal(diag.count, 1);
+		assert_int_equal(layout == NULL, wrong[i].severity == GR_DIAG_ERROR);
+		assert_true(unit_diag_has(&diag, wrong[i].severity, "t.cave:", wrong[i].message));
+		assert_true(unit_diag_has(&diag, wrong[i].severity, "t.cave:", wrong[i].key));
+		layout_destroy(&layout);
+		gr_diag_finish(&diag);
+		free(text);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -204,6 +279,8 @@ int main(void)
 		cmocka_unit_test(written_and_read_again),
 		cmocka_unit_test(faults_are_named),
 		cmocka_unit_test(a_device_needs_bindings),
+		cmocka_unit_test(a_polhemus_has_a_group_of_its_own),
+		cmocka_unit_test(faults_of_a_polhemus_are_named),
 	};
 
 	return cmocka_run_group_tests_name("layout_trackers", tests, NULL, NULL);
