@@ -81,7 +81,7 @@ static unsigned lacks(const struct fdp_reassembly *r)
 static void heal(struct fdp_reassembly *r)
 {
 	const unsigned n = (unsigned)r->count - r->have;
-	uint8_t lost[FDP_PARITY_MAX], rows[FDP_PARITY_MAX];
+	uint8_t lost[FDP_PARITY_MAX] = { 0 }, rows[FDP_PARITY_MAX] = { 0 };
 	unsigned i = 0, row = 0;
 
 	for (unsigned j = 0; j < r->count; j++)

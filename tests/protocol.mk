@@ -122,6 +122,8 @@ EXTRA_DIST += \
 	tests/fuzz/fuzz_reassembly.c tests/fuzz/fuzz_stranger.c \
 	tests/fuzz/corpus/reassembly/honest \
 	tests/fuzz/corpus/reassembly/lies \
+	tests/fuzz/corpus/reassembly/parity \
+	tests/fuzz/corpus/reassembly/parity-lies \
 	tests/fuzz/corpus/stranger/ack \
 	tests/fuzz/corpus/stranger/beacon \
 	tests/fuzz/corpus/stranger/short \
