@@ -154,6 +154,8 @@ enum layout_tracker_kind {
 	LAYOUT_TRACKER_VIPER,
 	LAYOUT_TRACKER_LIBERTY,
 	LAYOUT_TRACKER_PATRIOT,
+	LAYOUT_TRACKER_DTRACK,
+	LAYOUT_TRACKER_VRPN,
 };
 
 /* The simulated visitor, see tracking/sim.h for what each does. */
@@ -176,6 +178,30 @@ struct layout_polhemus {
 	vec3 hemisphere; /* base's axes; all 0: the device's own */
 	bool follow;
 	bool filter;
+};
+
+/* A.R.T. DTrack, see tracking/dtrack.h. */
+enum layout_up { LAYOUT_UP_Y, LAYOUT_UP_Z };
+enum layout_stick_x { LAYOUT_STICK_LEFT, LAYOUT_STICK_RIGHT };
+enum layout_stick_y { LAYOUT_STICK_UP, LAYOUT_STICK_DOWN };
+struct layout_dtrack {
+	enum layout_up up; /* of the room as it was calibrated */
+	uint16_t port;     /* that the controller sends to */
+	char *address;     /* of the controller, numeric IPv4; NULL: anyone may send */
+	char *group;       /* multicast group to join, or NULL */
+	char *interface;   /* that hears the group; NULL: the system chooses */
+	bool knock;        /* a datagram goes out to the controller first, for a firewall */
+	enum layout_stick_x stick_x_plus; /* where a Flystick's stick is when it says +1 */
+	enum layout_stick_y stick_y_plus;
+};
+
+/* A VRPN server's device, see tracking/vrpn.h. */
+enum layout_transport { LAYOUT_TCP, LAYOUT_UDP };
+struct layout_vrpn {
+	char *device;  /* the server's name for it */
+	char *address; /* of the server, numeric IPv4 */
+	uint16_t port;
+	enum layout_transport transport;
 };
 
 enum layout_body { LAYOUT_HEAD, LAYOUT_WAND };
@@ -208,6 +234,8 @@ struct layout_tracker {
 	char *serial; /* NULL: any */
 	int number;   /* of those that fit, from 0 */
 	int64_t latency_ns; /* of the device's quickest report */
+	struct layout_dtrack dtrack; /* of that kind alone, */
+	struct layout_vrpn vrpn;     /* and of that */
 	struct layout_frame room_base; /* T_room_base: where the device's frame is */
 	float scale; /* room metres per metre that the device says */
 	struct layout_polhemus polhemus;

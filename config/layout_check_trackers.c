@@ -167,8 +167,13 @@ static void check_tracker(struct options_reader *reader, const struct layout_fil
 	not_used(reader, entry, "polhemus",
 		 !layout_tracker_is_polhemus(tracker) && entry->polhemus.at,
 		 "kind = \"viper\", \"liberty\" and \"patriot\" are Polhemus'");
+	not_used(reader, entry, "dtrack", tracker->kind != LAYOUT_TRACKER_DTRACK && entry->dtrack.at,
+		 "kind = \"dtrack\" has a controller");
+	not_used(reader, entry, "vrpn", tracker->kind != LAYOUT_TRACKER_VRPN && entry->vrpn.at,
+		 "kind = \"vrpn\" has a server");
 	if (layout_tracker_is_device(tracker)) {
 		check_device(reader, file, i);
+		layout_check_tracker_network(reader, file, i);
 		return;
 	}
 	check_whole(reader, file, i);

@@ -80,6 +80,16 @@ struct layout_file_sim {
 	struct layout_sim sim;
 };
 
+struct layout_file_dtrack {
+	const config_setting_t *at;
+	struct layout_dtrack dtrack;
+};
+
+struct layout_file_vrpn {
+	const config_setting_t *at;
+	struct layout_vrpn vrpn;
+};
+
 struct layout_file_base {
 	const config_setting_t *at;
 	struct layout_frame room_base;
@@ -100,6 +110,8 @@ struct layout_file_tracker {
 	const config_setting_t *at;
 	struct layout_tracker tracker;
 	struct layout_file_sim sim;
+	struct layout_file_dtrack dtrack;
+	struct layout_file_vrpn vrpn;
 	struct layout_file_base base;
 	struct layout_file_polhemus polhemus;
 	struct layout_file_binding *bindings;
@@ -128,6 +140,7 @@ struct layout_file {
 
 extern const struct option layout_options[];
 extern const struct option layout_tracker_options[];
+extern const struct option layout_dtrack_options[], layout_vrpn_options[];
 
 /* Factors from the files' units to ours. */
 #define LAYOUT_RAD_PER_DEG 0.017453292519943295

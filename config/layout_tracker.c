@@ -51,12 +51,24 @@ static void build_binding(struct layout_binding *to, struct layout_file_binding 
 	make_pose(&to->sensor_body);
 }
 
+static void build_network(struct layout_tracker *out, struct layout_file_tracker *from)
+{
+	out->dtrack = from->dtrack.dtrack;
+	out->dtrack.address = take(&from->dtrack.dtrack.address);
+	out->dtrack.group = take(&from->dtrack.dtrack.group);
+	out->dtrack.interface = take(&from->dtrack.dtrack.interface);
+	out->vrpn = from->vrpn.vrpn;
+	out->vrpn.device = take(&from->vrpn.vrpn.device);
+	out->vrpn.address = take(&from->vrpn.vrpn.address);
+}
+
 void layout_tracker_build(struct layout_tracker *out, struct layout_file_tracker *from)
 {
 	*out = from->tracker;
 	out->file = take(&from->tracker.file);
 	out->serial = take(&from->tracker.serial);
 	out->sim = from->sim.sim;
+	build_network(out, from);
 	out->room_base = from->base.room_base;
 	out->scale = from->base.scale;
 	out->polhemus = from->polhemus.polhemus;
@@ -78,6 +90,11 @@ void layout_tracker_free(struct layout_tracker *tracker)
 	free(tracker->file);
 	free(tracker->serial);
 	free(tracker->polhemus.path);
+	free(tracker->dtrack.address);
+	free(tracker->dtrack.group);
+	free(tracker->dtrack.interface);
+	free(tracker->vrpn.device);
+	free(tracker->vrpn.address);
 	for (size_t i = 0; i < tracker->binding_count; i++) {
 		free(tracker->bindings[i].buttons);
 		free(tracker->bindings[i].axes);
@@ -92,6 +109,12 @@ void layout_tracker_fill(struct layout_file_tracker *out, const struct layout_tr
 	/* A group whose first value is absent is not written. */
 	if (from->kind != LAYOUT_TRACKER_SIM)
 		out->sim.sim.rate_hz = NAN;
+	out->dtrack.dtrack = from->dtrack;
+	if (from->kind != LAYOUT_TRACKER_DTRACK)
+		out->dtrack.dtrack.up = (enum layout_up)OPTION_ABSENT;
+	out->vrpn.vrpn = from->vrpn;
+	if (from->kind != LAYOUT_TRACKER_VRPN)
+		out->vrpn.vrpn.device = NULL;
 	out->base.room_base = from->room_base;
 	out->base.scale = from->scale;
 	if (!layout_tracker_is_device(from))

@@ -1,7 +1,8 @@
 /* The layout's keys about trackers. */
 #include "config/layout_options.h"
 
-static const char *const kind_choices[] = { "sim", "replay", "hydra", "viper", "liberty", "patriot", NULL };
+static const char *const kind_choices[] = { "sim",     "replay", "hydra", "viper", "liberty",
+					    "patriot", "dtrack", "vrpn",  NULL };
 static const char *const body_choices[] = { "head", "wand", NULL };
 
 #define AT(type, member) .offset = offsetof(struct type, member)
@@ -120,6 +121,10 @@ const struct option layout_tracker_options[] = {
 	{ .key = "latency_ms", .type = OPTION_TIME, .min = 0, .max = 1000, .standard = "0",
 	  .scale = LAYOUT_NS_PER_MS, .unit = "ms", AT(layout_file_tracker, tracker.latency_ns),
 	  .help = "for a device: how old its quickest report is when it arrives" },
+	{ .key = "dtrack", .type = OPTION_GROUP, AT(layout_file_tracker, dtrack),
+	  .group = layout_dtrack_options, .help = "for dtrack: what the controller sends, and where to" },
+	{ .key = "vrpn", .type = OPTION_GROUP, AT(layout_file_tracker, vrpn),
+	  .group = layout_vrpn_options, .help = "for vrpn: the server, and which of its devices" },
 	{ .key = "base", .type = OPTION_GROUP, AT(layout_file_tracker, base), .group = base_options,
 	  .help = "for a device: where its frame is in the room" },
 	{ .key = "polhemus", .type = OPTION_GROUP, AT(layout_file_tracker, polhemus),

@@ -8,12 +8,14 @@ config_libgconfig_a_SOURCES = \
 	config/layout_check_network.c \
 	config/layout_check_nodes.c \
 	config/layout_check_room.c \
+	config/layout_check_tracker_network.c \
 	config/layout_check_trackers.c \
 	config/layout_check_walls.c \
 	config/layout_geometry.c config/layout_geometry.h \
 	config/layout_items.c \
 	config/layout_options.c config/layout_options.h \
 	config/layout_tracker.c \
+	config/layout_tracker_network.c \
 	config/layout_tracker_options.c \
 	config/layout_write.c \
 	config/options.c config/options.h \

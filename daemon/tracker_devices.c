@@ -2,8 +2,10 @@
 
 #include "base/clock.h"
 #include "base/result.h"
+#include "tracking/dtrack.h"
 #include "tracking/hydra.h"
 #include "tracking/polhemus.h"
+#include "tracking/vrpn.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -37,12 +39,43 @@ static int create_polhemus(struct track_device **out, const struct layout_tracke
 	return track_polhemus_create(out, &params, &gr_clock_monotonic);
 }
 
+static int create_dtrack(struct track_device **out, const struct layout_tracker *tracker)
+{
+	const struct layout_dtrack *from = &tracker->dtrack;
+	const struct track_dtrack_params params = {
+		.address = from->address,
+		.group = from->group,
+		.interface_name = from->interface,
+		.port = from->port,
+		.knock = from->knock,
+		.setup = { .z_up = from->up == LAYOUT_UP_Z,
+			   .stick_x_left = from->stick_x_plus == LAYOUT_STICK_LEFT,
+			   .stick_y_down = from->stick_y_plus == LAYOUT_STICK_DOWN },
+	};
+
+	return track_dtrack_create(out, &params, &gr_clock_monotonic);
+}
+
+static int create_vrpn(struct track_device **out, const struct layout_tracker *tracker)
+{
+	const struct track_vrpn_params params = {
+		.device = tracker->vrpn.device,
+		.address = tracker->vrpn.address,
+		.port = tracker->vrpn.port,
+		.udp = tracker->vrpn.transport == LAYOUT_UDP,
+	};
+
+	return track_vrpn_create(out, &params, &gr_clock_monotonic);
+}
+
 /* Indexed by kind. */
 static int (*const create[])(struct track_device **, const struct layout_tracker *) = {
 	[LAYOUT_TRACKER_HYDRA] = create_hydra,
 	[LAYOUT_TRACKER_VIPER] = create_polhemus,
 	[LAYOUT_TRACKER_LIBERTY] = create_polhemus,
 	[LAYOUT_TRACKER_PATRIOT] = create_polhemus,
+	[LAYOUT_TRACKER_DTRACK] = create_dtrack,
+	[LAYOUT_TRACKER_VRPN] = create_vrpn,
 };
 
 int tracker_device_create(struct track_device **out, const struct layout *layout,

@@ -25,6 +25,12 @@ tests_unit_test_layout_trackers_SOURCES = tests/unit/test_layout_trackers.c $(LA
 tests_unit_test_layout_trackers_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_layout_trackers_LDADD = $(CONFIG_LIBS) $(CMOCKA_LIBS)
 
+check_PROGRAMS += tests/unit/test_layout_networks
+TESTS += tests/unit/test_layout_networks
+tests_unit_test_layout_networks_SOURCES = tests/unit/test_layout_networks.c $(LAYOUT_TEXT_SOURCES)
+tests_unit_test_layout_networks_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_layout_networks_LDADD = $(CONFIG_LIBS) $(CMOCKA_LIBS)
+
 check_PROGRAMS += tests/unit/test_layout_walls
 TESTS += tests/unit/test_layout_walls
 tests_unit_test_layout_walls_SOURCES = tests/unit/test_layout_walls.c $(LAYOUT_TEXT_SOURCES)

@@ -104,6 +104,13 @@ tests_unit_test_trackers_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_trackers_LDADD = daemon/libgdaemon.a $(TRACKING_LIBS) $(CONFIG_LIBS) \
 	$(PROTOCOL_LIBS) $(CMOCKA_LIBS)
 
+check_PROGRAMS += tests/unit/test_network_trackers
+TESTS += tests/unit/test_network_trackers
+tests_unit_test_network_trackers_SOURCES = tests/unit/test_network_trackers.c tests/unit/mock_vrpn.h \
+	tests/unit/net_device.h tests/unit/vrpn_bytes.h tests/unit/unit.h tests/unit/unit_config.h
+tests_unit_test_network_trackers_CFLAGS = $(TEST_CFLAGS) -pthread
+tests_unit_test_network_trackers_LDADD = $(tests_unit_test_trackers_LDADD)
+
 EXTRA_DIST += tests/fuzz/fuzz_control.c \
 	tests/fuzz/corpus/control/cut \
 	tests/fuzz/corpus/control/set \
