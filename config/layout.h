@@ -223,6 +223,26 @@ struct layout_binding {
 };
 #define LAYOUT_MAX_BINDINGS 8
 
+/* What is made of samples; see tracking/filter.h for what each does. */
+enum layout_filter_kind {
+	LAYOUT_FILTER_AUTO, /* a device: kalman; sim and replay: none, and no gate */
+	LAYOUT_FILTER_NONE,
+	LAYOUT_FILTER_ONE_EURO,
+	LAYOUT_FILTER_EXPONENTIAL,
+	LAYOUT_FILTER_KALMAN,
+};
+struct layout_filter {
+	enum layout_filter_kind kind;
+	float noise_position_m, noise_angle_rad; /* kalman */
+	float move_position, move_angle;         /* kalman: m^2/s^3, rad^2/s^3 */
+	float cutoff_hz, slope_hz;               /* one-euro */
+	float beta_position, beta_angle;         /* Hz s/m, Hz s/rad */
+	float tau_s;                             /* exponential */
+	bool gate;
+	float gate_m, gate_m_s, gate_rad, gate_rad_s;
+	float gate_hold_s, ahead_s, decay_s, gap_s, blend_s;
+};
+
 struct layout_tracker {
 	char name[LAYOUT_NAME_MAX];
 	enum layout_tracker_kind kind;
@@ -230,6 +250,7 @@ struct layout_tracker {
 	char *file;      /* replay: the log, absolute or relative to the layout file */
 	bool loop;
 	struct layout_sim sim;
+	struct layout_filter filter; /* of the bodies whose position it gives */
 	/* Devices. */
 	char *serial; /* NULL: any */
 	int number;   /* of those that fit, from 0 */

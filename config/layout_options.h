@@ -90,6 +90,11 @@ struct layout_file_vrpn {
 	struct layout_vrpn vrpn;
 };
 
+struct layout_file_filter {
+	const config_setting_t *at;
+	struct layout_filter filter;
+};
+
 struct layout_file_base {
 	const config_setting_t *at;
 	struct layout_frame room_base;
@@ -112,6 +117,7 @@ struct layout_file_tracker {
 	struct layout_file_sim sim;
 	struct layout_file_dtrack dtrack;
 	struct layout_file_vrpn vrpn;
+	struct layout_file_filter filter;
 	struct layout_file_base base;
 	struct layout_file_polhemus polhemus;
 	struct layout_file_binding *bindings;

@@ -69,6 +69,7 @@ void layout_tracker_build(struct layout_tracker *out, struct layout_file_tracker
 	out->serial = take(&from->tracker.serial);
 	out->sim = from->sim.sim;
 	build_network(out, from);
+	out->filter = from->filter.filter;
 	out->room_base = from->base.room_base;
 	out->scale = from->base.scale;
 	out->polhemus = from->polhemus.polhemus;
@@ -106,6 +107,7 @@ void layout_tracker_fill(struct layout_file_tracker *out, const struct layout_tr
 {
 	out->tracker = *from;
 	out->sim.sim = from->sim;
+	out->filter.filter = from->filter;
 	/* A group whose first value is absent is not written. */
 	if (from->kind != LAYOUT_TRACKER_SIM)
 		out->sim.sim.rate_hz = NAN;

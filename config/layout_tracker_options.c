@@ -39,6 +39,50 @@ static const struct option sim_options[] = {
 	{ .key = key_, .type = OPTION_FLOAT, .min = -(limit), .max = limit, .unit = "deg", \
 	  .scale = LAYOUT_RAD_PER_DEG, .standard = "0", AT(form, member), .help = help_ }
 
+static const char *const filter_choices[] = { "auto", "none", "one-euro", "exponential", "kalman", NULL };
+
+#define CONSTANT(key_, low, high, standard_, unit_, member, help_)                              \
+	{ .key = key_, .type = OPTION_FLOAT, .min = low, .max = high, .standard = standard_, \
+	  .unit = unit_, AT(layout_file_filter, filter.member), .help = help_ }
+#define TURN(key_, high, standard_, unit_, member, help_)                                     \
+	{ .key = key_, .type = OPTION_FLOAT, .min = 0, .max = high, .standard = standard_, \
+	  .scale = LAYOUT_RAD_PER_DEG, .unit = unit_, AT(layout_file_filter, filter.member), .help = help_ }
+#define SPAN(key_, low, high, standard_, member, help_)                                          \
+	{ .key = key_, .type = OPTION_FLOAT, .min = low, .max = high, .standard = standard_,  \
+	  .scale = 1e-3, .unit = "ms", AT(layout_file_filter, filter.member), .help = help_ }
+
+static const struct option filter_options[] = {
+	{ .key = "kind", .type = OPTION_CHOICE, .choices = filter_choices, .standard = "auto",
+	  AT(layout_file_filter, filter.kind),
+	  .help = "auto is kalman for a device, none without a gate for sim and replay; `grotto bench trackers` compares them" },
+	CONSTANT("noise_position_m", 1e-6, 0.1, "0.0003", "m", noise_position_m,
+		 "kalman: standard deviation of a sample's position"),
+	{ .key = "noise_angle_deg", .type = OPTION_FLOAT, .min = 1e-4, .max = 10, .standard = "0.1",
+	  .scale = LAYOUT_RAD_PER_DEG, .unit = "deg", AT(layout_file_filter, filter.noise_angle_rad),
+	  .help = "kalman: of its orientation" },
+	CONSTANT("move_position", 1e-3, 1e4, "5", "m^2/s^3", move_position,
+		 "kalman: density of the acceleration of a body that moves; more follows quicker"),
+	CONSTANT("move_angle", 1e-3, 1e6, "100", "rad^2/s^3", move_angle, "kalman: the same of its turns"),
+	CONSTANT("cutoff_hz", 0.01, 1000, "1", "Hz", cutoff_hz, "one-euro: cut-off at rest; less is calmer"),
+	CONSTANT("slope_hz", 0.01, 1000, "6", "Hz", slope_hz, "one-euro: cut-off of the speed"),
+	CONSTANT("beta_position", 0, 1e4, "60", "1/m", beta_position,
+		 "one-euro: by how much the cut-off rises with the speed; more lags less"),
+	CONSTANT("beta_angle", 0, 1e4, "10", "1/rad", beta_angle, "one-euro: the same for turns"),
+	SPAN("tau_ms", 0.1, 1000, "20", tau_s, "exponential: time constant"),
+	{ .key = "gate", .type = OPTION_BOOL, .standard = "true", AT(layout_file_filter, filter.gate),
+	  .help = "whether samples are refused that jump as no body does" },
+	CONSTANT("gate_m", 0.001, 10, "0.05", "m", gate_m, "such a jump is further than this"),
+	CONSTANT("gate_m_s", 0, 100, "10", "m/s", gate_m_s, "and this times the time since the last sample"),
+	TURN("gate_deg", 180, "17", "deg", gate_rad, "or a turn of more than this"),
+	TURN("gate_deg_s", 1e5, "1700", "deg/s", gate_rad_s, "and this times that time"),
+	SPAN("gate_hold_ms", 0, 1000, "50", gate_hold_s, "when they go on to agree for so long, the body is there"),
+	SPAN("ahead_ms", 0, 500, "60", ahead_s, "how far a body is moved on along its velocity"),
+	SPAN("decay_ms", 1, 5000, "60", decay_s, "how soon it comes back to its last good pose after that"),
+	SPAN("gap_ms", 1, 5000, "250", gap_s, "after so long without a sample the filter starts anew"),
+	SPAN("blend_ms", 0, 5000, "200", blend_s, "how long it takes from the pose that was shown to the one seen again"),
+	{ .key = NULL },
+};
+
 static const struct option base_options[] = {
 	{ .key = "position", .type = OPTION_FLOAT, .count = 3, .min = -1000, .max = 1000,
 	  .unit = "m", .standard = "0 0 0", AT(layout_file_base, room_base.position),
@@ -113,6 +157,8 @@ const struct option layout_tracker_options[] = {
 	  AT(layout_file_tracker, tracker.loop), .help = "for replay: begin again at the end" },
 	{ .key = "sim", .type = OPTION_GROUP, AT(layout_file_tracker, sim), .group = sim_options,
 	  .help = "for sim: what the simulated visitor does" },
+	{ .key = "filter", .type = OPTION_GROUP, AT(layout_file_tracker, filter), .group = filter_options,
+	  .help = "what is made of the samples of a body whose position it gives" },
 	{ .key = "serial", .type = OPTION_STRING, AT(layout_file_tracker, tracker.serial),
 	  .help = "for a device: its serial number, where there are several" },
 	{ .key = "number", .type = OPTION_INT, .min = 0, .max = 15, .standard = "0",

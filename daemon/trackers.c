@@ -4,6 +4,7 @@
 #include "base/result.h"
 #include "config/config_text.h"
 #include "daemon/tracker_devices.h"
+#include "daemon/tracker_filter.h"
 #include "tracking/replay.h"
 #include "tracking/sim.h"
 
@@ -68,10 +69,11 @@ static int open_one(struct tracker *out, const struct layout *layout,
 	}
 }
 
-/* What all devices together give of each body. */
+/* What all devices together give of each body, and what is made of it. */
 static void init_bodies(struct trackers *trackers)
 {
 	const struct layout *layout = trackers->layout;
+	struct track_filter_params filters[TRACK_BODIES];
 	unsigned parts[TRACK_BODIES] = { 0 };
 
 	for (size_t i = 0; i < trackers->count; i++)
@@ -80,6 +82,9 @@ static void init_bodies(struct trackers *trackers)
 				trackers->all[i].bindings[k].parts;
 	track_assembly_init(&trackers->bodies[TRACK_HEAD], &layout->start_head, parts[TRACK_HEAD]);
 	track_assembly_init(&trackers->bodies[TRACK_WAND], &layout->start_wand, parts[TRACK_WAND]);
+	for (int body = 0; body < TRACK_BODIES; body++)
+		filters[body] = tracker_filter_of(layout, (enum track_body)body);
+	track_history_init(&trackers->history, filters);
 }
 
 int trackers_open(struct trackers *out, const struct layout *layout, struct gr_diag *diag)
@@ -88,7 +93,6 @@ int trackers_open(struct trackers *out, const struct layout *layout, struct gr_d
 
 	memset(out, 0, sizeof *out);
 	out->layout = layout;
-	track_history_init(&out->history);
 	for (size_t i = 0; i < layout->tracker_count && r >= 0; i++) {
 		if (out->count == TRACKERS_MAX) {
 			gr_diag_add(diag, GR_DIAG_ERROR, layout->path, layout->trackers[i].line,
@@ -213,8 +217,8 @@ static void sample_body(const struct trackers *trackers, enum track_body body, i
 	struct track_sample sample;
 	bool tracked = false;
 
-	if (!track_history_at(&trackers->history, body, photon_ns, TRACKERS_AHEAD_NS,
-			      TRACKERS_STALE_NS, &sample, &tracked)) {
+	if (!track_history_at(&trackers->history, body, photon_ns, TRACKERS_STALE_NS,
+			      &sample, &tracked)) {
 		out->tracked = false;
 		return;
 	}

@@ -17,7 +17,6 @@
 #include "tracking/source.h"
 
 #define TRACKERS_MAX 8
-#define TRACKERS_AHEAD_NS (100 * INT64_C(1000000)) /* poses are extrapolated at most this far */
 #define TRACKERS_STALE_NS (500 * INT64_C(1000000)) /* older than this: not tracked */
 
 struct json; /* daemon/json.h, whose names are those of json-c, too */
@@ -71,7 +70,8 @@ void trackers_sample(const struct trackers *trackers, int64_t photon_ns,
 		     struct master_input *input);
 /*
  * An array: for each tracker its state, rate, age, drop-outs, faults; with
- * `poses` what it said last of each body, too.
+ * `poses` what it said last of each body, too. And one, "filters", of head and
+ * wand: samples that the gate refused, times begun anew.
  */
 void trackers_write_json(const struct trackers *trackers, struct json *json, const char *key,
 			 int64_t monotonic_ns, bool poses);

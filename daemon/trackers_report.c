@@ -98,6 +98,18 @@ void trackers_write_json(const struct trackers *trackers, struct json *json, con
 	for (size_t i = 0; i < trackers->count; i++)
 		write_tracker(json, &trackers->all[i], now_ns, poses);
 	json_close(json, ']');
+	json_open(json, "filters", '[');
+	for (int body = 0; body < TRACK_BODIES; body++) {
+		const struct track_filter *f = &trackers->history.filters[body];
+
+		json_open(json, NULL, '{');
+		json_string(json, "body", track_body_name((enum track_body)body));
+		json_string(json, "kind", track_filter_name(f->params.kind));
+		json_u64(json, "gated", f->gated);
+		json_u64(json, "restarts", f->restarts);
+		json_close(json, '}');
+	}
+	json_close(json, ']');
 }
 
 int trackers_answer(const struct trackers *trackers, int64_t now_ns, char *text, size_t size,

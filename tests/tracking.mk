@@ -1,6 +1,7 @@
 # tests of tracking
 TRACKING_TESTS = tests/unit/test_tracking tests/unit/test_sim tests/unit/test_replay \
-	tests/unit/test_bind tests/unit/test_device tests/unit/test_hydra_decode
+	tests/unit/test_bind tests/unit/test_device tests/unit/test_filter \
+	tests/unit/test_hydra_decode
 check_PROGRAMS += $(TRACKING_TESTS)
 TESTS += $(TRACKING_TESTS)
 
@@ -54,6 +55,14 @@ tests_loopback_bed_CFLAGS = $(MOCK_CFLAGS)
 tests_loopback_bed_LDADD = $(MOCK_LIBS)
 dist_check_SCRIPTS += tests/loopback/hydra.sh
 TESTS += tests/loopback/hydra.sh
+
+# Measured with the bench's own motions and figures.
+tests_unit_test_filter_SOURCES = tests/unit/test_filter.c tests/unit/unit.h \
+	tools/bench/hand.c tools/bench/hand.h \
+	tools/bench/predict.c tools/bench/predict.h tools/bench/random.h \
+	tools/bench/stats.c tools/bench/stats.h
+tests_unit_test_filter_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_filter_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
 
 EXTRA_DIST += \
 	tests/fuzz/fuzz_hydra.c \

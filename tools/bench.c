@@ -1,6 +1,7 @@
 /* grotto bench: speed beside error, of scenes here or of the lattice in a program of its own. */
 #include "base/result.h"
 #include "tools/bench/scenes.h"
+#include "tools/bench/trackers.h"
 #include "tools/cli.h"
 #include "tools/command.h"
 #include "tools/programs.h"
@@ -108,19 +109,23 @@ int command_bench(int argc, char **argv)
 	const struct cli_table table = {
 		"grotto bench SCENE... [--methods LIST] [--out DIR]\n"
 		"       grotto bench lattice [CELLS...]\n"
-		"       grotto bench barrier [--nodes N] [--rate HZ] [--frames N] [--runs N] [--multicast 1]",
+		"       grotto bench barrier [--nodes N] [--rate HZ] [--frames N] [--runs N] [--multicast 1]\n"
+		"       grotto bench trackers [--log FILE] [--rate HZ] [--noise-m M] [--noise-deg DEG]",
 		"Draws scenes with each method of indirect light and prints what it costs on this\n"
 		"machine's OpenGL beside how far it is from path-traced truth.\n"
 		"lattice: propagates light through lattices of CELLS a side (32 64) with the thesis'\n"
 		"own kernel and with ours, and prints the time and error of each.\n"
 		"barrier: how far apart nodes that draw nothing leave the swap barrier, told and at a\n"
-		"time, in turns; in network namespaces where that is allowed, else over loopback.",
+		"time, in turns; in network namespaces where that is allowed, else over loopback.\n"
+		"trackers: how far filters are from where head or hand will be; has options of its own.",
 		options, sizeof options / sizeof options[0]
 	};
 	int words;
 
 	if (argc > 1 && strcmp(argv[1], "barrier") == 0)
 		return become_barrier(argv + 1);
+	if (argc > 1 && strcmp(argv[1], "trackers") == 0)
+		return bench_trackers(argc - 1, argv + 1);
 	switch (cli_parse(&table, argc, argv, &words)) {
 	case CLI_HELP: return GR_EXIT_OK;
 	case CLI_WRONG: return GR_EXIT_CONFIG;

@@ -8,6 +8,11 @@ tracking_libgtracking_a_SOURCES = \
 	tracking/dtrack_report.c \
 	tracking/handover.c tracking/handover.h \
 	tracking/hid.c tracking/hid.h \
+	tracking/filter.c tracking/filter.h tracking/filter_private.h \
+	tracking/filter_exponential.c \
+	tracking/filter_fit.c \
+	tracking/filter_kalman.c \
+	tracking/filter_one_euro.c \
 	tracking/history.c \
 	tracking/hotplug.c tracking/hotplug.h \
 	tracking/hydra.h tracking/hydra_decode.c tracking/hydra_device.c \
@@ -20,6 +25,7 @@ tracking_libgtracking_a_SOURCES = \
 	tracking/replay.c tracking/replay.h \
 	tracking/replay_parse.c \
 	tracking/report.c tracking/report.h \
+	tracking/rotation.c tracking/rotation.h \
 	tracking/sim.c tracking/sim.h \
 	tracking/source.c tracking/source.h \
 	tracking/text.c tracking/text.h \

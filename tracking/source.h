@@ -12,6 +12,7 @@
 
 #include "base/diag.h"
 #include "base/pose.h"
+#include "tracking/filter.h"
 #include "tracking/report.h"
 
 #include <stdbool.h>
@@ -63,36 +64,36 @@ const char *track_body_name(enum track_body body);
 void track_source_destroy(struct track_source **source);
 
 /*
- * The recent past of each body. Fixed size, no allocation. A valid sample with
- * a bad pose (GR_ERR_FORMAT), and one of an unknown body, not newer than the
- * last of its body or more than 1 s ahead of now (GR_ERR_RANGE) is dropped and
- * counted. The pose of a sample that is not valid is never read; a run of such
- * samples takes one place.
+ * The recent past of each body, filtered. Fixed size, no allocation. A valid
+ * sample with a bad pose (GR_ERR_FORMAT), and one of an unknown body, not newer
+ * than the last of its body or more than 1 s ahead of now (GR_ERR_RANGE) is
+ * dropped and counted. The pose of a sample that is not valid is never read; a
+ * run of such samples takes one place. A pose that the filter's gate refuses is
+ * replaced by where the body was expected; its buttons count.
  */
 #define TRACK_HISTORY 64
 struct track_history {
-	struct track_sample ring[TRACK_BODIES][TRACK_HISTORY];
+	struct track_sample ring[TRACK_BODIES][TRACK_HISTORY]; /* poses are filtered */
 	uint64_t count[TRACK_BODIES]; /* ever stored */
 	uint64_t dropped;
+	struct track_filter filters[TRACK_BODIES];
 };
-void track_history_init(struct track_history *history);
+void track_history_init(struct track_history *history,
+			const struct track_filter_params params[TRACK_BODIES]);
 int track_history_add(struct track_history *history, const struct track_sample *sample,
 		      int64_t now_ns);
 
 /*
- * The pose at time_ns: between two samples mixed, before the oldest held,
- * after the newest extrapolated for at most max_ahead_ns and held from there
- * on. The velocity is a least-squares line through the last 50 ms, or through
- * the last two samples where these lie further back. Samples that are not
- * valid do not count but for their buttons and axes; these do not mix.
+ * The pose at time_ns: between two samples mixed, before the oldest held, after
+ * the newest as track_filter_at says. Samples that are not valid do not count
+ * but for their buttons and axes; these do not mix.
  *
  * False, and *out and *tracked untouched, when the body was never seen.
  * out->valid and *tracked (may be NULL) tell whether the last sample was valid
  * and less than stale_ns older than time_ns.
  */
 bool track_history_at(const struct track_history *history, enum track_body body, int64_t time_ns,
-		      int64_t max_ahead_ns, int64_t stale_ns, struct track_sample *out,
-		      bool *tracked);
+		      int64_t stale_ns, struct track_sample *out, bool *tracked);
 /* When the body was last seen: the time of its last valid sample. False: never, as far as is known. */
 bool track_history_seen(const struct track_history *history, enum track_body body,
 			int64_t *time_ns);

@@ -17,16 +17,20 @@ tools_bench_lattice_LDADD = $(RENDERER_LIBS)
 noinst_LIBRARIES += tools/libgbench.a
 tools_libgbench_a_SOURCES = \
 	tools/bench/axis.c tools/bench/axis.h \
+	tools/bench/hand.c tools/bench/hand.h \
+	tools/bench/logged.c tools/bench/logged.h \
 	tools/bench/measure.c tools/bench/measure.h \
 	tools/bench/motion.c tools/bench/motion.h \
 	tools/bench/picture.c tools/bench/picture.h \
 	tools/bench/plot.c tools/bench/plot.h \
+	tools/bench/predict.c tools/bench/predict.h tools/bench/random.h \
 	tools/bench/points.c tools/bench/points.h \
 	tools/bench/report.h tools/bench/report_json.c tools/bench/report_plot.c \
 	tools/bench/report_table.c \
 	tools/bench/settings.c tools/bench/settings.h \
 	tools/bench/stats.c tools/bench/stats.h \
 	tools/bench/svg.c tools/bench/svg.h \
+	tools/bench/trackers.c tools/bench/trackers.h \
 	tools/bench/truth_store.c tools/bench/truth_store.h \
 	tools/bench/truth_traced.c tools/bench/truth_traced.h \
 	tools/bench/scenes.c tools/bench/scenes.h
