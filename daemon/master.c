@@ -95,6 +95,14 @@ static void record_frame(struct master *m, const struct frame_next *next, uint64
 	recorder_frame(m->recorder, now_ns, m->state, &frame);
 }
 
+/* Where masters take over from each other no wall's frames go back, whoever said the last. */
+static uint64_t last_frame(const struct master *m)
+{
+	const uint64_t floor = m->params.layout->standby_count ? fdp_master_floor(m->fdp) : 0;
+
+	return floor > m->frame ? floor : m->frame;
+}
+
 /* Asks what comes next. False when nothing does: the room ends, in order or not. */
 static bool next_frame(struct master *m, int64_t now_ns, struct frame_next *next)
 {
@@ -102,7 +110,7 @@ static bool next_frame(struct master *m, int64_t now_ns, struct frame_next *next
 		.now_ns = now_ns,
 		.to_swap_ns = m->params.frame_clock || m->stats.smoothed_swap_ns == 0 ?
 				      m->period_ns : m->stats.smoothed_swap_ns,
-		.last = m->frame,
+		.last = last_frame(m),
 		.restart_light = m->restart_light,
 	};
 	uint64_t times;

@@ -124,17 +124,6 @@ static int find_master(const struct layout *layout, const char *wanted)
 	return -1;
 }
 
-/* A standby is the first one of this machine, or else the first master that comes back as one. */
-static int own_master(const struct layout *layout, bool standby)
-{
-	struct net_address address;
-
-	for (size_t i = 1; standby && i < net_masters(layout); i++)
-		if (net_master_address(layout, i, &address) == GR_OK && net_is_ours(&address))
-			return (int)i;
-	return 0;
-}
-
 static int choose_master(const struct opened *o, const struct master_options *options, unsigned *out)
 {
 	const struct layout *layout = o->files.layout;
@@ -144,8 +133,9 @@ static int choose_master(const struct opened *o, const struct master_options *op
 		gr_error("--standby: %s has no standby; add standby = ( { address = \"...\"; } )", layout->path);
 		return GR_ERR_CONFIG;
 	}
+	/* A standby is the first one of this machine, or else the first master that comes back as one. */
 	index = options->address ? find_master(layout, options->address) :
-				   own_master(layout, options->standby);
+		options->standby ? (int)net_own_standby(layout) : 0;
 	if (index < 0) {
 		gr_error("--address %s: neither network.master_address nor a standby of %s", options->address,
 			 layout->path);

@@ -307,6 +307,16 @@ bool net_is_ours(const struct net_address *address)
 	return ours;
 }
 
+size_t net_own_standby(const struct layout *layout)
+{
+	struct net_address address;
+
+	for (size_t i = 1; i < net_masters(layout); i++)
+		if (net_master_address(layout, i, &address) == GR_OK && net_is_ours(&address))
+			return i;
+	return 0;
+}
+
 /* The layout's masters, from `at` on; where there is one alone a master has no peer but nodes. */
 static int add_masters(struct net *net, const struct layout *layout, size_t at)
 {

@@ -44,6 +44,8 @@ size_t net_masters(const struct layout *layout);
 int net_master_address(const struct layout *layout, size_t index, struct net_address *out);
 /* Whether an address is one of this machine. */
 bool net_is_ours(const struct net_address *address);
+/* Index of the first of the layout's standbys that is this machine; 0: none is. */
+size_t net_own_standby(const struct layout *layout);
 /* The socket of master `index`, on its address and port. The log names what fails. */
 int net_open_master(struct net **out, const struct layout *layout, size_t index);
 /* Node `index`'s sockets: its own port, and the group's where there is one. */

@@ -250,6 +250,11 @@ uint64_t fdp_session_after(uint64_t highest);
  */
 void fdp_master_call(struct fdp_master *master);
 bool fdp_master_calls(const struct fdp_master *master);
+/*
+ * The highest frame that a node which came in has shown, whoever was its master: one
+ * that begins its next frame above it shows no wall a frame that is not above the last.
+ */
+uint64_t fdp_master_floor(const struct fdp_master *master);
 /* BEACON to every node and master that is not in, at once. */
 void fdp_master_beacon(struct fdp_master *master, int64_t now_ns);
 uint64_t fdp_master_session(const struct fdp_master *master);

@@ -97,6 +97,11 @@ void fdp_master_call(struct fdp_master *m)
 	m->calls = true;
 }
 
+uint64_t fdp_master_floor(const struct fdp_master *m)
+{
+	return m->floor;
+}
+
 bool fdp_master_calls(const struct fdp_master *m)
 {
 	return m->calls;
@@ -110,7 +115,7 @@ static void forget_room(struct fdp_master *m)
 		fdp_master_clock_forget(&m->peers[i]);
 	sodium_memzero(m->node_keys, sizeof m->node_keys);
 	m->gate.keyed = 0;
-	m->frame = m->previous_frame = m->swapped = 0;
+	m->frame = m->previous_frame = m->swapped = m->floor = 0;
 	m->hash = m->previous_hash = 0;
 	memset(m->hash_frames, 0xff, sizeof m->hash_frames);
 	m->underway = m->calls = false;

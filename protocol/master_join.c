@@ -10,6 +10,9 @@
 #include <stdio.h>
 #include <string.h>
 
+/* No room comes so far; what a node says beyond it is nonsense. */
+#define FLOOR_MOST (UINT64_C(1) << 56)
+
 static void make_challenge(const struct fdp_master *m, unsigned node,
 			   const uint8_t nonce[FDP_NONCE_BYTES],
 			   uint8_t challenge[FDP_NONCE_BYTES])
@@ -107,6 +110,8 @@ static void admit(struct fdp_master *m, unsigned node, const struct fdp_header *
 	peer->refused[0] = 0;
 	peer->state = fdp_peer_next(peer->state, FDP_PEER_JOINS);
 	if (!fdp_master_is_follower(m, node)) {
+		if (join->shown > m->floor && join->shown <= FLOOR_MOST)
+			m->floor = join->shown;
 		m->calls = false;
 		fdp_master_probe_group(m);
 	}

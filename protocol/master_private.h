@@ -131,6 +131,7 @@ struct fdp_master {
 	int64_t asked_ns; /* who has not acknowledged the frame was last asked, or the frame began */
 	int64_t keepalive_at;
 	int64_t spoke_ns;    /* to all who are live or follow */
+	uint64_t floor;      /* see fdp_master_floor */
 	bool calls;          /* see fdp_master_call */
 	int64_t all_told_ns; /* SWAP last went to all nodes that the layout has */
 	unsigned probes; /* in this frame */

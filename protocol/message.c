@@ -48,6 +48,7 @@ size_t fdp_join_encode(const struct fdp_join *m, uint8_t *bytes, size_t size)
 	gr_write_bytes(&w, m->name, sizeof m->name);
 	gr_write_u64(&w, m->plan);
 	gr_write_u64(&w, m->highest);
+	gr_write_u64(&w, m->shown);
 	gr_write_u8(&w, m->layout_items);
 	gr_write_u8(&w, m->scene_items);
 	gr_write_bytes(&w, m->items, sizeof m->items);
@@ -60,6 +61,7 @@ static int read_rest(struct gr_reader *r, struct fdp_join *out)
 	unsigned count, used;
 
 	out->highest = gr_read_u64(r);
+	out->shown = gr_read_u64(r);
 	out->layout_items = gr_read_u8(r);
 	out->scene_items = gr_read_u8(r);
 	read_into(r, out->items, sizeof out->items);
@@ -98,7 +100,7 @@ int fdp_join_decode(const uint8_t *bytes, size_t len, struct fdp_join *out)
 		return GR_ERR_FORMAT;
 	if (out->version == FDP_VERSION)
 		return read_rest(&r, out);
-	out->highest = 0;
+	out->highest = out->shown = 0;
 	out->layout_items = out->scene_items = 0;
 	memset(out->items, 0, sizeof out->items);
 	return r.ok ? GR_OK : GR_ERR_FORMAT;

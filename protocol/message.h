@@ -13,9 +13,9 @@
 #define FDP_NONCE_BYTES 16
 #define FDP_NAME_BYTES 32 /* with the final NUL */
 /* Padded: what answers a JOIN, or a BEACON, is never longer than it. */
-#define FDP_JOIN_BYTES 328
+#define FDP_JOIN_BYTES 336
 #define FDP_JOIN_FIXED 152 /* of these the form is the same in all versions */
-#define FDP_ITEMS_BYTES (FDP_JOIN_BYTES - FDP_JOIN_FIXED - 10)
+#define FDP_ITEMS_BYTES (FDP_JOIN_BYTES - FDP_JOIN_FIXED - 18)
 #define FDP_BODY_MAX (FDP_DATAGRAM_MIN - FDP_HEADER_BYTES) /* of all but states and slices */
 
 struct fdp_join {
@@ -29,6 +29,7 @@ struct fdp_join {
 	/* What it expects of that, hundredths: of a millisecond a frame, of a percent. UINT16_MAX: that or more. */
 	uint16_t plan_cost, plan_error;
 	uint64_t highest; /* session that it has been in: it enters none below; 0: none yet */
+	uint64_t shown;   /* the highest frame that it was told to show, in any session; 0: none yet */
 	/*
 	 * The parts of layout and scene, the beginnings of their digests in this
 	 * order: fdp_items_width bytes each. All 0 in a JOIN of another version.

@@ -12,6 +12,8 @@
 /* A master that calls says so every frame; what was asked of it may be lost. */
 #define CALL_AGAIN_NS INT64_C(10000000)
 #define CALL_KEPT_NS INT64_C(1000000000) /* a call is of use for so long */
+/* A master that knows nothing of the room may have it when those that do have been silent for so long. */
+#define ORPHANED_NS INT64_C(1000000000)
 
 /* Whichever there is. */
 int fdp_node_whom_to_ask(const struct fdp_node *n)
@@ -47,6 +49,7 @@ void fdp_node_send_join(struct fdp_node *n, int to, uint64_t session,
 		.plan_cost = n->params.plan_cost,
 		.plan_error = n->params.plan_error,
 		.highest = n->highest,
+		.shown = n->shown,
 		.layout_items = (uint8_t)n->params.contents.layout_count,
 		.scene_items = (uint8_t)n->params.contents.scene_count,
 	};
@@ -76,7 +79,8 @@ void fdp_node_send_join(struct fdp_node *n, int to, uint64_t session,
 void fdp_node_prove_highest(struct fdp_node *n, const struct fdp_header *h,
 			    const struct fdp_welcome *w, int64_t now_ns)
 {
-	if (n->guards || (n->proved_ns && now_ns - n->proved_ns < n->params.join_ns / 4))
+	if (n->guards || (n->params.masters > 1 && now_ns - n->heard_ns < ORPHANED_NS) ||
+	    (n->proved_ns && now_ns - n->proved_ns < n->params.join_ns / 4))
 		return;
 	n->proved_ns = now_ns;
 	n->hinted_ns = 0; /* it will call at once */
@@ -109,16 +113,16 @@ enum fdp_verdict fdp_node_on_beacon(struct fdp_node *n, const struct fdp_header 
 /* When the call that we have heard may be answered; INT64_MAX: there is none. */
 int64_t fdp_node_call_at(const struct fdp_node *n)
 {
+	const bool several = n->params.masters > 1, below = n->call_session < n->highest;
+	const int64_t silence_ns = several && below ? ORPHANED_NS : n->params.call_ns;
 	int64_t at = 0;
 
 	if (!n->call_session)
 		return INT64_MAX;
 	if (n->hinted_ns)
-		at = n->hinted_ns + (n->call_session > n->highest && n->params.masters > 1
-					     ? CALL_AGAIN_NS
-					     : n->params.join_ns);
-	if (fdp_node_in_session(n) && n->heard_ns + n->params.call_ns > at)
-		at = n->heard_ns + n->params.call_ns;
+		at = n->hinted_ns + (several && !below ? CALL_AGAIN_NS : n->params.join_ns);
+	if (fdp_node_in_session(n) && n->heard_ns + silence_ns > at)
+		at = n->heard_ns + silence_ns;
 	return at;
 }
 

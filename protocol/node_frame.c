@@ -74,6 +74,8 @@ static void swap_if_due(struct fdp_node *n)
 		return;
 	n->current.swapped = true;
 	event.frame = n->current.frame;
+	if (event.frame > n->shown)
+		n->shown = event.frame;
 	event.at_ns = n->swap_seen == n->current.show ? n->swap_at_ns : 0;
 	n->ops.event(n->ops.ctx, &event);
 }

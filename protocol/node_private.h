@@ -49,6 +49,7 @@ struct fdp_node {
 	struct fdp_replay window;
 	unsigned master;  /* that we are with, by the layout */
 	uint64_t highest; /* session that we have been in */
+	uint64_t shown;   /* frame that we were told to show, in any session */
 	bool guards;      /* see fdp_node_guard */
 	int to;           /* where what is sent goes: a master, or FDP_TO_ALL */
 	/* The highest session that a BEACON spoke of, since when, and by whom; 0: none that is of use. */

@@ -236,18 +236,21 @@ static void call_again(struct fdp_standby *s, int64_t now_ns)
 
 static enum fdp_standby_change call(struct fdp_standby *s, int64_t now_ns)
 {
+	const int64_t heard_ns = fdp_node_heard(s->ear);
+
+	call_again(s, now_ns);
 	if (!fdp_master_calls(s->master)) {
 		s->role = FDP_ROLE_RULES;
 		s->took_ns = now_ns;
 		fdp_node_guard(s->ear, fdp_master_session(s->master));
 		return FDP_STANDBY_TAKES;
 	}
-	if (fdp_node_heard(s->ear) > s->began_ns) {
+	/* Of late: this one may have been stopped itself, and read what waited. */
+	if (heard_ns > s->began_ns && now_ns - heard_ns < patience(s)) {
 		s->role = FDP_ROLE_FOLLOWS;
-		s->alive_ns = fdp_node_heard(s->ear);
+		s->alive_ns = heard_ns;
 		return FDP_STANDBY_RETURNS;
 	}
-	call_again(s, now_ns);
 	return FDP_STANDBY_SAME;
 }
 

@@ -146,7 +146,7 @@ static void fuzz_pair_start(struct fuzz_pair *p, size_t datagram_max)
 	const struct fdp_master_params master = {
 		.session = FUZZ_SESSION, .key = { 1 }, .node_names = names, .node_count = 2,
 		.datagram_max = datagram_max, .deadline_ns = 33000000, .evict_frames = 3,
-		.multicast = true, .share_bytes = 4096,
+		.multicast = true, .share_bytes = 4096, .masters = 2, .heartbeat_ns = 20000000,
 	};
 
 	p->frame = p->count = 0;
@@ -156,7 +156,7 @@ static void fuzz_pair_start(struct fuzz_pair *p, size_t datagram_max)
 	for (uint16_t i = 0; i < 2; i++) {
 		const struct fdp_node_params node = {
 			.index = i, .name = names[i], .key = { 1 }, .datagram_max = datagram_max,
-			.share_bytes = 4096,
+			.share_bytes = 4096, .masters = 2, .call_ns = 80000000,
 		};
 		if (fdp_node_create(&p->nodes[i], &node, &node_ops))
 			abort();
@@ -201,7 +201,8 @@ static __attribute__((unused)) size_t fuzz_next(struct fuzz_pair *p, struct gr_r
 	memcpy(bytes, header, FDP_MAC_AT);
 	memcpy(bytes + FDP_HEADER_BYTES, payload, len);
 	if (right & 1) {
-		gr_write_bytes(&w, "GFDP\3", 5);
+		gr_write_bytes(&w, "GFDP", 4);
+		gr_write_u8(&w, FDP_VERSION);
 		gr_write_u8(&w, header[5] % FDP_KINDS);
 		gr_write_u8(&w, header[6] & 7);
 		gr_write_u8(&w, 0);

@@ -82,15 +82,6 @@ static void master_event(void *ctx, const struct fdp_master_event *e)
 		fdp_standby_outranked(m->standby, e->theirs);
 }
 
-/* Of a master that had nobody to follow before it ruled. */
-static bool begins_anew(const struct room *r, uint64_t session)
-{
-	for (int k = 0; k < ROOM_MASTERS; k++)
-		if (r->masters[k].fdp && fdp_master_session(r->masters[k].fdp) == session)
-			return r->masters[k].fresh;
-	return true; /* it has died since */
-}
-
 /* What no wall may ever do: go back to a session below, or show what was before. */
 static void show(struct room_node *n)
 {
@@ -99,10 +90,7 @@ static void show(struct room_node *n)
 
 	n->wants_swap = 0;
 	assert_true(session >= n->highest);
-	if (frame <= n->frame) {
-		assert_true(session > n->session && (r->parts || begins_anew(r, session)));
-		r->behind++;
-	}
+	assert_true(frame > n->frame); /* whoever said either */
 	if (session > r->watched_session && !r->first_swap_ns)
 		r->first_swap_ns = r->now_ns;
 	n->session = n->highest = session;
@@ -162,7 +150,7 @@ void room_start_master(struct room *r, unsigned index, bool follows)
 
 	memcpy(p.key, cluster_key, sizeof p.key);
 	memcpy(s.key, cluster_key, sizeof s.key);
-	*m = (struct room_master){ .room = r, .index = index, .fresh = true, .begin_at_ns = r->now_ns };
+	*m = (struct room_master){ .room = r, .index = index, .begin_at_ns = r->now_ns };
 	assert_int_equal(param_state_create(&m->state), GR_OK);
 	assert_int_equal(fdp_master_create(&m->fdp, &p, &ops), GR_OK);
 	assert_int_equal(fdp_standby_create(&m->standby, &s, &ear, m->fdp, r->now_ns), GR_OK);
@@ -213,11 +201,13 @@ static bool may_begin(const struct room_master *m)
 
 static void begin(struct room_master *m)
 {
-	const uint64_t frame = ++m->frame, time = frame * 16666667;
+	const uint64_t floor = fdp_master_floor(m->fdp), frame = (floor > m->frame ? floor : m->frame) + 1;
+	const uint64_t time = frame * 16666667;
 	const float head[3] = { (float)uniform(m->room), 1.6f, (float)m->index };
 
 	assert_true(param_set(m->state, PARAM_FRAME_TIME, &time, frame) >= 0);
 	assert_true(param_set(m->state, PARAM_HEAD_POSITION, head, frame) >= 0);
+	m->frame = frame;
 	m->begun_ns = m->room->now_ns;
 	m->begin_at_ns = INT64_MAX;
 	assert_int_equal(fdp_master_begin(m->fdp, m->state, frame, m->room->now_ns), GR_OK);
@@ -237,7 +227,6 @@ static void changed(struct room_master *m, enum fdp_standby_change change)
 	case FDP_STANDBY_TAKES:
 		m->taken++;
 		followed = fdp_standby_state(m->standby, &frame, NULL);
-		m->fresh = frame == 0;
 		if (frame) {
 			param_state_copy(m->state, followed);
 			m->frame = fdp_standby_first_frame(m->standby, now_ns) - 1;

@@ -35,7 +35,6 @@ struct room_master {
 	struct param_state *state;
 	uint64_t frame;
 	int64_t begin_at_ns, begun_ns;
-	bool fresh; /* its frames go on from nobody's */
 	bool hangs; /* its process is stopped: datagrams wait */
 	unsigned taken, yielded, called, returned, renewed;
 };
@@ -56,8 +55,6 @@ struct room {
 	struct unit_random random;
 	int64_t now_ns;
 	double loss;
-	bool parts; /* masters may have ruled side by side: one may be behind another's frames */
-	uint64_t behind; /* pictures of a new session that were */
 	int64_t render_ns;
 	bool cut[ROOM_ENDS][ROOM_ENDS]; /* from, to */
 	struct room_master masters[ROOM_MASTERS];

@@ -194,6 +194,29 @@ static void starts_anew(void **state)
 	room_finish(&r);
 }
 
+/*
+ * A ruler that stutters loses the room to who followed it, not to one that starts anew at that
+ * very time and knows nothing.
+ */
+static void stutters(void **state)
+{
+	struct room r;
+
+	(void)state;
+	room_start(&r, 12, 20);
+	room_kill_master(&r, 2);
+	r.masters[0].hangs = true;
+	room_run(&r, 60 * ROOM_MS);
+	room_start_master(&r, 2, false);
+	room_run(&r, 30 * ROOM_MS);
+	r.masters[0].hangs = false;
+	room_run(&r, 2000 * ROOM_MS);
+	assert_true(room_ruler(&r) == 0 || room_ruler(&r) == 1);
+	assert_one_room(&r, room_ruler(&r));
+	assert_int_equal(r.masters[2].renewed, 0);
+	room_finish(&r);
+}
+
 /* All masters die; one that knows nothing starts: nodes tell it what it must be above. */
 static void all_masters_die(void **state)
 {
@@ -367,7 +390,7 @@ static void turmoil(void **state)
 {
 	const uint64_t seed = seed_of("turmoil");
 	const int count = runs(20);
-	uint64_t taken = 0, yielded = 0, renewed = 0, swaps = 0, behind = 0;
+	uint64_t taken = 0, yielded = 0, renewed = 0, swaps = 0;
 
 	(void)state;
 	for (int i = 0; i < count; i++) {
@@ -375,7 +398,6 @@ static void turmoil(void **state)
 
 		room_start(&r, seed + (uint64_t)i, 10);
 		r.loss = i % 2 ? 0.02 : 0;
-		r.parts = true;
 		for (int step = 0; step < 30; step++) {
 			const unsigned what = unit_random_u32(&r.random) % 8;
 			const unsigned k = unit_random_u32(&r.random) % ROOM_MASTERS;
@@ -407,13 +429,11 @@ static void turmoil(void **state)
 		assert_one_room(&r, room_ruler(&r));
 		for (int n = 0; n < ROOM_NODES; n++)
 			swaps += r.nodes[n].swaps;
-		behind += r.behind;
 		room_finish(&r);
 	}
-	printf("# turmoil: %d rooms, %llu takeovers, %llu yielded, %llu rose above; %llu pictures, none of a session gone by; "
-	       "%llu the first of a master that had not followed the one before\n",
+	printf("# turmoil: %d rooms, %llu takeovers, %llu yielded, %llu rose above; %llu pictures, none out of order\n",
 	       count, (unsigned long long)taken, (unsigned long long)yielded, (unsigned long long)renewed,
-	       (unsigned long long)swaps, (unsigned long long)behind);
+	       (unsigned long long)swaps);
 }
 
 int main(void)
@@ -421,7 +441,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(takes_over),	   cmocka_unit_test(same_state),
 		cmocka_unit_test(cut_off),	   cmocka_unit_test(comes_back),
-		cmocka_unit_test(starts_anew),	   cmocka_unit_test(all_masters_die),
+		cmocka_unit_test(starts_anew),	   cmocka_unit_test(stutters),
+		cmocka_unit_test(all_masters_die),
 		cmocka_unit_test(partition),	   cmocka_unit_test(two_standbys),
 		cmocka_unit_test(master_leaves),   cmocka_unit_test(claims),
 		cmocka_unit_test(turmoil),

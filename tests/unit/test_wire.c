@@ -316,7 +316,7 @@ struct sample {
 
 static const struct sample samples[] = {
 	{ "join", FDP_JOIN_BYTES, false,
-	  { .join = { FDP_VERSION, 3, { 1, 2 }, { 3 }, { 4 }, { 5 }, 6, "left", 7, 2180, 510, 99, 20, 13, { 1, 2, 3 } } },
+	  { .join = { FDP_VERSION, 3, { 1, 2 }, { 3 }, { 4 }, { 5 }, 6, "left", 7, 2180, 510, 99, 77, 20, 13, { 1, 2, 3 } } },
 	  enc_join, dec_join },
 	{ "welcome", 64, false, { .welcome = { { 1 }, { 2 }, { 3 }, UINT64_C(1) << 40, 33000, 4125 } },
 	  enc_welcome, dec_welcome },

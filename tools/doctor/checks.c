@@ -45,9 +45,22 @@ const char *doctor_program(const struct doctor *d)
 	return d->node < 0 ? "grotto-master" : "grotto-node";
 }
 
+size_t doctor_master(const struct layout *layout)
+{
+	struct net_address address;
+
+	if (!layout->standby_count || (net_master_address(layout, 0, &address) == GR_OK && net_is_ours(&address)))
+		return 0;
+	return net_own_standby(layout);
+}
+
 uint16_t doctor_port(const struct doctor *d)
 {
-	return d->node < 0 ? d->layout->network.master_port : d->layout->nodes[d->node].port;
+	const size_t master = d->node < 0 ? doctor_master(d->layout) : 0;
+
+	return d->node >= 0 ? d->layout->nodes[d->node].port
+	       : master	    ? d->layout->standby[master - 1].port
+			    : d->layout->network.master_port;
 }
 
 static void add_diag(struct doctor *d, const struct gr_diag *diag, const char *remedy)

@@ -24,7 +24,11 @@
 
 static const char *role_address(const struct doctor *d)
 {
-	return d->node < 0 ? d->layout->network.master_address : d->layout->nodes[d->node].address;
+	const size_t master = d->node < 0 ? doctor_master(d->layout) : 0;
+
+	return d->node >= 0 ? d->layout->nodes[d->node].address
+	       : master	    ? d->layout->standby[master - 1].address
+			    : d->layout->network.master_address;
 }
 
 /* The bytes of an address alone; len 4 or 16. */

@@ -46,6 +46,23 @@ static void look_at(struct doctor *d, const char *who, const char *address, uint
 		findings_add(&d->found, way_judge_whole(who, &way, datagram_max));
 }
 
+/* Masters that stand by, and the first where this machine has one that does; own: not that one. */
+static void look_at_standbys(struct doctor *d, size_t own)
+{
+	const struct layout *layout = d->layout;
+
+	if (own != 0 && own <= layout->standby_count)
+		look_at(d, "the master", layout->network.master_address, layout->network.master_port, false,
+			false);
+	for (size_t i = 0; i < layout->standby_count; i++) {
+		char who[32];
+
+		snprintf(who, sizeof who, "standby %zu", i + 1);
+		if (i + 1 != own)
+			look_at(d, who, layout->standby[i].address, layout->standby[i].port, false, false);
+	}
+}
+
 void check_ways(struct doctor *d)
 {
 	const struct layout *layout = d->layout;
@@ -57,6 +74,7 @@ void check_ways(struct doctor *d)
 	if (d->node >= 0) {
 		look_at(d, "the master", layout->network.master_address, layout->network.master_port,
 			is_live(d, (size_t)d->node), false);
+		look_at_standbys(d, layout->standby_count + 1);
 		return;
 	}
 	for (size_t i = 0; i < layout->node_count; i++) {
@@ -68,6 +86,7 @@ void check_ways(struct doctor *d)
 		snprintf(who, sizeof who, "node %s", layout->nodes[i].name);
 		look_at(d, who, layout->nodes[i].address, layout->nodes[i].port, is_live(d, i), looked);
 	}
+	look_at_standbys(d, doctor_master(layout));
 }
 
 /* Joins as a node does, on a socket of its own that is closed again. */

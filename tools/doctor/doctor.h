@@ -42,6 +42,8 @@ extern const size_t doctor_check_count;
 
 const char *doctor_program(const struct doctor *doctor); /* "grotto-master" or "grotto-node" */
 uint16_t doctor_port(const struct doctor *doctor);
+/* Which of the layout's masters this machine is: the first, unless it is one that stands by. */
+size_t doctor_master(const struct layout *layout);
 
 /* Fills user (from the machine's table, or this process') and status, then runs the checks. */
 void doctor_run(struct doctor *doctor);

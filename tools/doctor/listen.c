@@ -69,7 +69,7 @@ static void serve(struct listener *l, int64_t until_ns, net_receive_fn fn)
 int doctor_listen(const struct layout *layout, int node, int seconds)
 {
 	struct listener l = { 0 };
-	int r = node < 0 ? net_open_master(&l.net, layout, 0) : net_open_node(&l.net, layout, (size_t)node);
+	int r = node < 0 ? net_open_master(&l.net, layout, doctor_master(layout)) : net_open_node(&l.net, layout, (size_t)node);
 
 	if (r < 0)
 		return r;
@@ -86,7 +86,7 @@ int doctor_ask_group(const struct layout *layout, uint64_t *out_answered)
 	size_t len = net_datagram_max(&layout->network);
 	uint8_t bytes[DATAGRAM_MOST];
 	struct listener l = { 0 };
-	int r = len > sizeof bytes ? GR_ERR_RANGE : net_open_master(&l.net, layout, 0);
+	int r = len > sizeof bytes ? GR_ERR_RANGE : net_open_master(&l.net, layout, doctor_master(layout));
 
 	*out_answered = 0;
 	if (r < 0)
