@@ -111,6 +111,13 @@ tests_unit_test_network_trackers_SOURCES = tests/unit/test_network_trackers.c te
 tests_unit_test_network_trackers_CFLAGS = $(TEST_CFLAGS) -pthread
 tests_unit_test_network_trackers_LDADD = $(tests_unit_test_trackers_LDADD)
 
+check_PROGRAMS += tests/unit/test_tracker_devices
+TESTS += tests/unit/test_tracker_devices
+tests_unit_test_tracker_devices_SOURCES = tests/unit/test_tracker_devices.c tests/unit/fake_device.h tests/unit/unit.h
+tests_unit_test_tracker_devices_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_tracker_devices_LDADD = daemon/libgdaemon.a $(TRACKING_LIBS) $(CONFIG_LIBS) \
+	$(PROTOCOL_LIBS) $(CMOCKA_LIBS)
+
 EXTRA_DIST += tests/fuzz/fuzz_control.c \
 	tests/fuzz/corpus/control/cut \
 	tests/fuzz/corpus/control/set \
