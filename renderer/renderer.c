@@ -268,12 +268,25 @@ static int draw_frame(struct renderer *r, const struct render_frame *frame,
 	return result;
 }
 
-static bool frame_valid(const struct render_frame *frame)
+static bool lamp_valid(const struct frame_lamp *lamp)
 {
+	for (int k = 0; k < 3; k++)
+		if (!isfinite(lamp->position[k]) || !isfinite(lamp->direction[k]) ||
+		    !isfinite(lamp->intensity[k]))
+			return false;
+	return true;
+}
+
+static bool frame_valid(const struct renderer *r, const struct render_frame *frame)
+{
+	for (size_t i = 0; i < r->file->lamp_count; i++)
+		if (frame->lamps[i].on && !lamp_valid(&frame->lamps[i]))
+			return false;
 	return gr_pose_valid(&frame->T_scene_room) && gr_pose_valid(&frame->T_room_head) &&
 	       isfinite(frame->eye_separation_m) && frame->absorption_per_m >= 0 &&
 	       frame->scattering_per_m >= 0 && isfinite(frame->absorption_per_m) &&
-	       isfinite(frame->scattering_per_m) && isfinite(frame->exposure) &&
+	       isfinite(frame->scattering_per_m) && isfinite(frame->gi_incremental) &&
+	       isfinite(frame->exposure) &&
 	       isfinite(frame->gamma_encode) && frame->gamma_encode > 0;
 }
 
@@ -281,7 +294,7 @@ int renderer_draw(struct renderer *renderer, const struct render_frame *frame)
 {
 	if (!renderer->params.wall_given)
 		return GR_ERR_STATE;
-	if (!frame_valid(frame))
+	if (!frame_valid(renderer, frame))
 		return GR_ERR_RANGE;
 	return draw_frame(renderer, frame, NULL);
 }
@@ -291,7 +304,7 @@ int renderer_draw_camera(struct renderer *renderer, const struct render_frame *f
 {
 	if (renderer->params.eyes != RENDERER_MONO)
 		return GR_ERR_STATE;
-	if (!frame_valid(frame))
+	if (!frame_valid(renderer, frame))
 		return GR_ERR_RANGE;
 	return draw_frame(renderer, frame, camera);
 }

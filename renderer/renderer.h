@@ -58,8 +58,8 @@ void renderer_destroy(struct renderer **renderer);
  * Does not wait for the GPU. What did not change is not drawn again: without a
  * change of lamps, light, medium or head the last picture stays as it is.
  *
- * GR_ERR_STATE without a wall, GR_ERR_RANGE for a frame with a pose or a
- * number that is not finite, GR_ERR_GL.
+ * GR_ERR_STATE without a wall, GR_ERR_RANGE for a frame with a pose, a lamp
+ * that is on, or a number that is not finite, GR_ERR_GL.
  */
 int renderer_draw(struct renderer *renderer, const struct render_frame *frame);
 /* A still from a camera of the scene file instead of the wall; one eye only (RENDERER_MONO). */

@@ -34,7 +34,7 @@ SHADERS += \
 	renderer/shaders/lpv_splat_sum.comp renderer/shaders/lpv_step.comp \
 	renderer/shaders/lpv_thesis_start.comp renderer/shaders/lpv_thesis_step.comp \
 	renderer/shaders/lpv_thesis_store.comp \
-	renderer/shaders/gi_probes.glsl renderer/shaders/gi_surfels.glsl renderer/shaders/probe_gather.comp \
+	renderer/shaders/gi_probes.glsl renderer/shaders/gi_surfels.glsl renderer/shaders/probe_check.comp renderer/shaders/probe_gather.comp \
 	renderer/shaders/probe_grid.glsl renderer/shaders/surfel_block.glsl renderer/shaders/surfel_check.comp \
 	renderer/shaders/surfel_gather.comp renderer/shaders/surfel_light.comp renderer/shaders/surfel_pack.comp \
 	renderer/shaders/surfel_packed.glsl renderer/shaders/surfel_slice.glsl renderer/shaders/surfel_smooth.comp renderer/shaders/surfel_unpack.comp

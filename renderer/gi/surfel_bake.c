@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/plain.h"
 #include "base/result.h"
+#include "renderer/gi/surfel_file_private.h"
 
 #include <stdlib.h>
 
@@ -244,6 +245,21 @@ void bake_finish(struct bake *bake)
 	surfel_set_destroy(&bake->set);
 }
 
+/* What shaders would take unseen, and no file would bring. */
+static int check_set(const struct surfel_set *set, struct gr_diag *diag)
+{
+	const char *wrong = surfel_check_head(set);
+
+	if (!wrong)
+		wrong = surfel_check_arrays(set);
+	if (!wrong)
+		return GR_OK;
+	gr_diag_add(diag, GR_DIAG_ERROR, NULL, 0, NULL,
+		    "surfels as baked cannot be used: %s; what emits and the environment must be finite",
+		    wrong);
+	return GR_ERR_RANGE;
+}
+
 int surfel_bake(struct surfel_set **out, const struct scene *scene, const struct scene_file *file,
 		const struct surfel_bake_params *params, struct gr_diag *diag)
 {
@@ -267,6 +283,8 @@ int bake_then(struct surfel_set **out, const struct scene *scene, const struct s
 	result = bake.set && bake.chosen ? bake_all(&bake) : GR_ERR_NOMEM;
 	if (result == GR_OK && bake.piece_count == 0)
 		result = make_empty(&bake);
+	if (result == GR_OK)
+		result = check_set(bake.set, diag);
 	if (result == GR_OK) {
 		bake.set->seconds = seconds_since(bake.started_ns);
 		bake.set->threads = bake.threads;

@@ -149,6 +149,9 @@ int bake_fixed(struct bake *bake)
 	f.emissive.medium = f.air;
 	f.sets = (bake->params.links + POINTS_EACH * SAMPLER_SET - 1) / (POINTS_EACH * SAMPLER_SET);
 	result = emitters_init(&f.emissive.emitters, &f.emissive.world);
+	if (result == GR_ERR_RANGE)
+		gr_diag_add(bake->diag, GR_DIAG_ERROR, NULL, 0, NULL,
+			    "a material's emission is not finite; a scene's import would have refused it");
 	if (result == GR_OK && f.emissive.emitters.count + (bake->scene->environment != NULL) > 0)
 		result = bake_run(bake, set->count, 4, light_all, &f);
 	set->rays += atomic_load(&f.rays);

@@ -139,8 +139,9 @@ static bool update_all(struct surfels *s, bool changed, bool lamps)
 	s->since_change += s->params.gathers;
 	s->stats.steps = s->params.gathers;
 	surfels_smooth(s);
-	surfels_check_submit(s, all);
+	surfels_check_begin(s, all);
 	surfels_probes_gather(s);
+	surfels_check_end(s);
 	return true;
 }
 
@@ -172,7 +173,8 @@ static bool update_slice(struct surfels *s, bool changed, bool lamps)
 	s->lit = true;
 	for (int i = 0; i < s->params.gathers; i++)
 		surfels_gather(s, own);
-	surfels_check_submit(s, own);
+	surfels_check_begin(s, own);
+	surfels_check_end(s);
 	surfels_share_pack(s);
 	s->since_change++;
 	s->stats.steps = s->params.gathers;
@@ -200,11 +202,12 @@ static int update(struct gi_method *method, const struct render_frame *frame,
 	s->version = light->version;
 	if (again) {
 		restart(s, light->lamps);
-		surfels_check_submit(s, (struct surfels_run){ 0, (uint32_t)s->count });
+		surfels_check_begin(s, (struct surfels_run){ 0, (uint32_t)s->count });
 		if (s->share.count > 1 || s->share.other_slices)
 			surfels_share_recut(s);
 		surfels_smooth(s);
 		surfels_probes_gather(s);
+		surfels_check_end(s);
 	} else {
 		if (s->share.other_slices) {
 			surfels_share_recut(s);

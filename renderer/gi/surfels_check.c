@@ -49,12 +49,12 @@ static void take(struct surfels *s, unsigned slot)
 	const volatile char *at = (const volatile char *)s->check_map + slot * SLOT_BYTES;
 	const volatile struct surfels_check *check = (const volatile struct surfels_check *)at;
 	float change = float_of(check->change), largest = float_of(check->largest);
-	uint32_t nonfinite = check->nonfinite;
+	uint32_t surfels = check->nonfinite, probes = check->probes_nonfinite;
 
 	s->stats.residual = largest > 0 ? (double)(change / largest) : 0;
-	s->stats.nonfinite += nonfinite;
-	if (nonfinite && s->nonfinite_frames++ % LOG_EVERY == 0)
-		gr_error("surfels: the light of %u is NaN or infinite", nonfinite);
+	s->stats.nonfinite += (uint64_t)surfels + probes;
+	if ((surfels || probes) && s->nonfinite_frames++ % LOG_EVERY == 0)
+		gr_error("surfels: the light of %u surfels and %u probes is NaN or infinite", surfels, probes);
 }
 
 void surfels_check_collect(struct surfels *s)
@@ -74,23 +74,41 @@ void surfels_check_collect(struct surfels *s)
 	}
 }
 
-void surfels_check_submit(struct surfels *s, struct surfels_run run)
+static void bind_slot(const struct surfels *s, unsigned slot)
+{
+	glBindBufferRange(GL_SHADER_STORAGE_BUFFER, SURFELS_BINDING_OTHER, s->checks,
+			  slot * SLOT_BYTES, sizeof(struct surfels_check));
+}
+
+void surfels_check_begin(struct surfels *s, struct surfels_run run)
 {
 	unsigned slot = s->ring;
 
-	if (s->fences[slot])
-		return; /* the GPU is that far behind: skip a look rather than wait */
-	s->ring = (slot + 1) % SURFELS_RING;
+	/* the GPU may be that far behind: skip a look rather than wait */
+	s->checking = !s->fences[slot];
+	if (!s->checking)
+		return;
 	glClearNamedBufferSubData(s->checks, GL_R32UI, slot * SLOT_BYTES,
 				  sizeof(struct surfels_check), GL_RED_INTEGER, GL_UNSIGNED_INT,
 				  NULL);
 	glBindTextureUnit(SURFELS_UNIT_RADIOSITY, s->radiosity[s->current].texture);
 	glBindTextureUnit(SURFELS_UNIT_BEFORE, s->radiosity[!s->current].texture);
 	glBindTextureUnit(SURFELS_UNIT_PARTS, s->found.texture);
-	glBindBufferRange(GL_SHADER_STORAGE_BUFFER, SURFELS_BINDING_OTHER, s->checks,
-			  slot * SLOT_BYTES, sizeof(struct surfels_check));
+	bind_slot(s, slot);
 	surfels_barrier();
 	surfels_dispatch(s->check, run);
+}
+
+void surfels_check_end(struct surfels *s)
+{
+	unsigned slot = s->ring;
+
+	if (!s->checking)
+		return;
+	s->checking = false;
+	s->ring = (slot + 1) % SURFELS_RING;
+	bind_slot(s, slot);
+	surfels_probes_check(s);
 	glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 	s->fences[slot] = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
 }

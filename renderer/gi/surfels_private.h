@@ -59,7 +59,7 @@ struct surfels_block {
 };
 
 struct surfels_check {
-	uint32_t nonfinite, change, largest, pad;
+	uint32_t nonfinite, change, largest, probes_nonfinite;
 };
 
 /* A run of surfels: first is a multiple of SURFELS_GROUP. */
@@ -93,10 +93,10 @@ struct surfels_share {
 
 /* Spherical harmonics on a grid (surfels_probes.c). */
 struct surfels_probes {
-	unsigned program, block;
+	unsigned program, check, block; /* check: looks for what is not finite */
 	size_t count;
 	uint32_t links_each;
-	struct dispatch all;
+	struct dispatch all, each; /* coefficients; probes */
 	struct surfels_buffer links, basis, fixed, light, alive;
 	unsigned distance; /* texture, octahedral maps with a border of one texel */
 };
@@ -137,6 +137,7 @@ struct surfels {
 	const volatile struct surfels_check *check_map;
 	void *fences[SURFELS_RING];
 	unsigned ring;
+	bool checking; /* a look has begun and not ended */
 	struct gi_stats stats;
 	uint64_t nonfinite_frames;
 };
@@ -167,10 +168,15 @@ int surfels_smooth_init(struct surfels *s, const struct surfel_set *set);
 void surfels_smooth_finish(struct surfels *s);
 void surfels_smooth(struct surfels *s);
 
-/* surfels_check.c: looks at the newest light, reads what is there of earlier looks. */
+/*
+ * surfels_check.c: looks at the newest light, reads what is there of earlier looks.
+ * begin looks at the surfels, end at the probes, when they have been fed; an end
+ * without a begin does nothing.
+ */
 int surfels_check_init(struct surfels *s);
 void surfels_check_finish(struct surfels *s);
-void surfels_check_submit(struct surfels *s, struct surfels_run run);
+void surfels_check_begin(struct surfels *s, struct surfels_run run);
+void surfels_check_end(struct surfels *s);
 void surfels_check_collect(struct surfels *s);
 
 /* surfels_share.c */
@@ -192,6 +198,8 @@ uint64_t surfels_share_hash(const struct surfels *s);
 int surfels_probes_init(struct surfels *s, const struct surfel_set *set);
 void surfels_probes_finish(struct surfels *s);
 void surfels_probes_gather(struct surfels *s);
+/* Counts probes whose light is not finite, into the bound check. */
+void surfels_probes_check(struct surfels *s);
 void surfels_probes_bind(const struct surfels *s);
 
 /* 64 bits of a buffer's first bytes, on top of `before`. Waits. */

@@ -156,10 +156,14 @@ int surfels_probes_init(struct surfels *s, const struct surfel_set *set)
 	struct surfels_probes *p = &s->probes;
 	int result = program_create_compute(&p->program, "probe_gather.comp", NULL);
 
+	if (result == GR_OK)
+		result = program_create_compute(&p->check, "probe_check.comp", NULL);
 	p->count = from->count;
 	p->links_each = from->links_each;
 	if (result == GR_OK)
 		result = dispatch_plan((uint64_t)p->count * SURFEL_SH, SURFELS_GROUP, &p->all);
+	if (result == GR_OK)
+		result = dispatch_plan(p->count, SURFELS_GROUP, &p->each);
 	if (result == GR_OK)
 		result = upload_links(s, from);
 	if (result == GR_OK)
@@ -176,6 +180,7 @@ void surfels_probes_finish(struct surfels *s)
 	struct surfels_probes *p = &s->probes;
 
 	program_destroy(&p->program);
+	program_destroy(&p->check);
 	surfels_storage_finish(&p->links);
 	surfels_storage_finish(&p->basis);
 	surfels_storage_finish(&p->fixed);
@@ -204,6 +209,18 @@ void surfels_probes_gather(struct surfels *s)
 	glProgramUniform1f(p->program, 1, sigma <= 0 ? 0 : sigma < 1 ? log2f(1 - sigma) : -1e6f);
 	glDispatchCompute(p->all.x, p->all.y, 1);
 	surfels_barrier();
+}
+
+void surfels_probes_check(struct surfels *s)
+{
+	struct surfels_probes *p = &s->probes;
+
+	if (!p->program)
+		return;
+	glBindTextureUnit(SURFELS_UNIT_PROBES, p->light.texture);
+	glUseProgram(p->check);
+	glProgramUniform1ui(p->check, 0, (unsigned)p->count);
+	glDispatchCompute(p->each.x, p->each.y, 1);
 }
 
 void surfels_probes_bind(const struct surfels *s)

@@ -10,7 +10,7 @@ layout(binding = 8) uniform samplerBuffer radiosity;
 layout(binding = 9) uniform samplerBuffer before;
 layout(binding = 10) uniform samplerBuffer found;
 layout(std430, binding = 15) buffer CheckBuffer {
-	uint nonfinite, change, largest;
+	uint nonfinite, change, largest, probes_nonfinite;
 } check;
 shared uint group_nonfinite, group_change, group_largest;
 

@@ -141,8 +141,14 @@ int emitters_init(struct emitters *out, const struct world *world)
 	int result;
 
 	memset(out, 0, sizeof *out);
-	for (size_t t = 0; t < triangles; t++)
-		emissive += !v3_black(v3_of(world_material(world, (unsigned)t)->emission));
+	for (size_t t = 0; t < triangles; t++) {
+		const struct v3 emission = v3_of(world_material(world, (unsigned)t)->emission);
+
+		/* v3_black of a NaN is as may be: it must not pass for dark */
+		if (!isfinite(emission.x) || !isfinite(emission.y) || !isfinite(emission.z))
+			return GR_ERR_RANGE;
+		emissive += !v3_black(emission);
+	}
 	if (emissive == 0)
 		return GR_OK;
 	power = malloc(emissive * sizeof *power);

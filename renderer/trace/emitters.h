@@ -25,6 +25,7 @@ struct emitters {
 	size_t count;
 	float *density; /* per triangle of the scene, 1/m^2: of drawing a point of it; NULL without emitters */
 };
+/* GR_OK; GR_ERR_RANGE: a material's emission is no finite number; GR_ERR_NOMEM. */
 int emitters_init(struct emitters *out, const struct world *world);
 void emitters_finish(struct emitters *emitters);
 

@@ -290,6 +290,9 @@ static void refused(void **state)
 	s.frame.T_room_head.p[1] = 1;
 	s.frame.T_scene_room.q[3] = 0;
 	assert_int_equal(renderer_draw(s.renderer, &s.frame), GR_ERR_RANGE);
+	s.frame.T_scene_room.q[3] = 1;
+	s.frame.gi_incremental = NAN;
+	assert_int_equal(renderer_draw(s.renderer, &s.frame), GR_ERR_RANGE);
 	stop(&s);
 }
 

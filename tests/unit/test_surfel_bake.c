@@ -436,6 +436,35 @@ static int set_up(void **state)
 	return sodium_init() < 0 ? -1 : 0;
 }
 
+/* An import lets no such emission in; if one came, no set would hold it. */
+static void emission_that_is_no_number(void **state)
+{
+	const float wrong[] = { NAN, INFINITY };
+	const struct surfel_bake_params params = quick(0.8f);
+
+	(void)state;
+	for (int i = 0; i < 2; i++) {
+		struct room_builder b;
+		struct gr_diag diag = { 0 };
+		struct surfel_set *set = NULL;
+		struct scene *scene;
+
+		room_begin(&b);
+		uint32_t m = room_material(&b, 0.5f, 0.5f, 0.5f), shines = room_material(&b, 0.5f, 0.5f, 0.5f);
+		room_inside(&b, (uint32_t[6]){ m, m, m, shines, m, m }, (float[3]){ 0, 0, 0 }, (float[3]){ 3, 2, 4 });
+		scene = room_end(&b);
+		scene->materials[shines].emission[1] = wrong[i];
+		scene->emissive = true;
+		assert_true(surfel_bake(&set, scene, NULL, &params, &diag) < 0);
+		assert_null(set);
+		assert_int_equal(diag.errors, 1);
+		assert_non_null(strstr(diag.items[diag.count - 1].text, "not finite"));
+		printf("# %s\n", diag.items[diag.count - 1].text);
+		gr_diag_finish(&diag);
+		room_free(&scene);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -447,6 +476,7 @@ int main(void)
 		cmocka_unit_test(broken_triangles),
 		cmocka_unit_test(odd_shapes),
 		cmocka_unit_test(black_or_bright),
+		cmocka_unit_test(emission_that_is_no_number),
 		cmocka_unit_test(nothing_at_all),
 		cmocka_unit_test(refused),
 		cmocka_unit_test(can_be_stopped),

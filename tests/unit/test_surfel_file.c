@@ -197,6 +197,49 @@ static void hostile(void **state)
 	free(bytes);
 }
 
+/* Light, places and reflectances that are no numbers, in a file that is whole: refused, and said which. */
+static void not_finite(void **state)
+{
+	struct surfel_set *set = room.set;
+	const struct {
+		float *at;
+		const char *reason;
+	} places[] = {
+		{ &set->spacing_m, "its spacing is not a length" },
+		{ &set->surfels[1].position[2], "a surfel is nowhere" },
+		{ &set->taps[3].position[0], "a point of a surfel is nowhere" },
+		{ &set->area[0], "a surfel's area" },
+		{ &set->albedo[2][1], "reflectance is out of range" },
+		{ &set->fixed_emissive[0][2], "a surfel's light is not finite" },
+		{ &set->fixed_other[set->count - 1][0], "a surfel's light is not finite" },
+		{ &set->probes.directions[0][1], "a direction of its probes" },
+		{ &set->probes.fixed[0][SURFEL_SH - 1][2], "a probe's light or distances are not finite" },
+		{ &set->probes.distance[0][7][1], "a probe's light or distances are not finite" },
+		{ &set->probes.cell_m, "its probes do not stand in a grid" },
+	};
+	const float wrong[] = { NAN, -NAN, INFINITY };
+	const char *path = in_folder("wrong.surfels");
+
+	(void)state;
+	for (size_t i = 0; i < sizeof places / sizeof *places; i++)
+		for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+			const float before = *places[i].at;
+			uint8_t *bytes;
+			size_t len;
+
+			/* an area may be as large as it likes */
+			if (places[i].at == &set->area[0] && !isnan(wrong[k]))
+				continue;
+			*places[i].at = wrong[k];
+			assert_int_equal(surfel_file_write(set, key, path), GR_OK);
+			*places[i].at = before;
+			bytes = read_file(path, &len);
+			assert_int_equal(decode(bytes, len, places[i].reason), GR_ERR_FORMAT);
+			free(bytes);
+		}
+	unlink(path);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -205,6 +248,7 @@ int main(void)
 		cmocka_unit_test(flipped_bit),
 		cmocka_unit_test(other_version_or_scene),
 		cmocka_unit_test(hostile),
+		cmocka_unit_test(not_finite),
 	};
 
 	return cmocka_run_group_tests(tests, set_up, tear_down);
