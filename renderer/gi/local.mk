@@ -24,7 +24,7 @@ RENDERER_SOURCES += \
 	renderer/gi/surfel_random.h renderer/gi/surfel_reach.c renderer/gi/surfel_surface.c \
 	renderer/gi/surfel_grid.c renderer/gi/surfel_set.c renderer/gi/surfel_set.h renderer/gi/surfel_start.c \
 	renderer/gi/surfels.c renderer/gi/surfels.h renderer/gi/surfels_private.h \
-	renderer/gi/surfels_check.c renderer/gi/surfels_probes.c renderer/gi/surfels_share.c renderer/gi/surfels_smooth.c renderer/gi/surfels_upload.c \
+	renderer/gi/surfels_air.c renderer/gi/surfels_check.c renderer/gi/surfels_probes.c renderer/gi/surfels_share.c renderer/gi/surfels_smooth.c renderer/gi/surfels_upload.c \
 	renderer/gi/transfer.c renderer/gi/transfer.h
 
 SHADERS += \
@@ -35,6 +35,7 @@ SHADERS += \
 	renderer/shaders/lpv_thesis_start.comp renderer/shaders/lpv_thesis_step.comp \
 	renderer/shaders/lpv_thesis_store.comp \
 	renderer/shaders/gi_probes.glsl renderer/shaders/gi_surfels.glsl renderer/shaders/probe_check.comp renderer/shaders/probe_gather.comp \
-	renderer/shaders/probe_grid.glsl renderer/shaders/surfel_block.glsl renderer/shaders/surfel_check.comp \
+	renderer/shaders/probe_grid.glsl renderer/shaders/surfel_air.glsl renderer/shaders/surfel_block.glsl renderer/shaders/surfel_check.comp \
 	renderer/shaders/surfel_gather.comp renderer/shaders/surfel_light.comp renderer/shaders/surfel_pack.comp \
-	renderer/shaders/surfel_packed.glsl renderer/shaders/surfel_slice.glsl renderer/shaders/surfel_smooth.comp renderer/shaders/surfel_unpack.comp
+	renderer/shaders/surfel_packed.glsl renderer/shaders/surfel_slice.glsl renderer/shaders/surfel_smooth.comp renderer/shaders/surfel_thin.comp \
+	renderer/shaders/surfel_unpack.comp

@@ -194,6 +194,9 @@ static int bake_all(struct bake *bake)
 	result = bake_surface(bake);
 	if (result != GR_OK || bake->piece_count == 0)
 		return result;
+	medium_init(&bake->air, bake->params.absorption_per_m + bake->params.scattering_per_m, 0,
+		    bake->scene->min, bake->scene->max);
+	bake->set->extinction = bake->air.extinction;
 	result = world_init(&bake->world, bake->scene, bake->threads);
 	if (result == GR_OK)
 		result = place_all(bake);

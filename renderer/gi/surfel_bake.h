@@ -28,7 +28,7 @@
 #include <stdbool.h>
 
 /* Grows when equal input no longer gives equal sets. */
-#define SURFEL_BAKE_VERSION 4
+#define SURFEL_BAKE_VERSION 5
 
 #define SURFEL_MOST ((size_t)1 << 17)       /* surfels of a set */
 #define SURFEL_LINKS_MOST ((size_t)1 << 28) /* links of all surfels, or of all probes */

@@ -7,6 +7,7 @@
 
 #include "renderer/gi/surfel_bake.h"
 #include "renderer/trace/crew.h"
+#include "renderer/trace/medium.h"
 #include "renderer/trace/world.h"
 
 #include <stdatomic.h>
@@ -63,6 +64,7 @@ struct bake {
 	int threads;
 
 	struct world world;
+	struct medium air;       /* takes what it scatters, too: that comes from the lattice alone */
 	size_t triangle_count;
 	struct v3 *normals;      /* of each triangle's front; 0 0 0: not a triangle */
 	float *areas;            /* of each triangle, m^2 */
@@ -143,6 +145,7 @@ struct bake_end {
 	uint32_t surfel; /* SURFEL_NONE: brings no reflected light */
 	bool back;       /* met an unlit back at once */
 	float light[3];  /* W/(m^2 sr) */
+	float way, way2; /* mean of its bands times the metres that it has come, and their squares */
 };
 /*
  * Follows a ray until it ends on a diffuse surface, is absorbed or leaves the
@@ -194,7 +197,10 @@ int bake_link_tables(struct bake *bake);
 void bake_link_rays(const struct bake *bake, size_t i, uint32_t first, struct bake_links_rays *out);
 /* surfel_links.c: all links, and what mirrors show surfels; again, the same anew. */
 int bake_links(struct bake *bake);
-/* surfel_fixed.c; after the links, which bring what mirrors show. */
+/*
+ * surfel_fixed.c; after the links, which bring what mirrors show, and its ways as sums in
+ * the last two of fixed_way.
+ */
 int bake_fixed(struct bake *bake);
 /* surfel_probes.c */
 int bake_probes(struct bake *bake);

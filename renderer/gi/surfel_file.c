@@ -77,6 +77,7 @@ static size_t encode_head(const struct surfel_set *set, const uint8_t key[SURFEL
 	gr_write_u64(&w, (uint64_t)(set->seconds * 1e6));
 	gr_write_u64(&w, (uint64_t)(set->ray_seconds * 1e6));
 	gr_write_u32(&w, (uint32_t)set->threads);
+	gr_write_f32(&w, set->extinction);
 	return w.len;
 }
 
@@ -207,6 +208,7 @@ static void decode_head(const uint8_t *bytes, struct surfel_set *set)
 	set->seconds = (double)gr_read_u64(&r) * 1e-6;
 	set->ray_seconds = (double)gr_read_u64(&r) * 1e-6;
 	set->threads = (int)gr_read_u32(&r);
+	set->extinction = gr_read_f32(&r);
 }
 
 /* Arrays of the sizes that the head says, in the order of surfel_set_parts. */
@@ -220,6 +222,7 @@ static int take_arrays(struct surfel_set *set, const uint8_t *bytes, size_t len)
 		(void **)&set->grid.members, (void **)&set->probes.directions,
 		(void **)&set->probes.links, (void **)&set->probes.fixed,
 		(void **)&set->probes.distance, (void **)&set->probes.alive,
+		(void **)&set->fixed_way, (void **)&set->probes.fixed_way,
 	};
 
 	if (surfel_set_parts(set, parts) != len)

@@ -20,7 +20,7 @@
 
 #include <stdint.h>
 
-#define SURFEL_FILE_FORM 1
+#define SURFEL_FILE_FORM 2
 #define SURFEL_KEY_BYTES 32
 /* Longest file that is read. */
 #define SURFEL_FILE_MOST ((uint64_t)6 << 30)

@@ -3,6 +3,7 @@
 
 #include "renderer/gi/surfel_bake.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 
@@ -76,6 +77,8 @@ const char *surfel_check_head(const struct surfel_set *set)
 	    set->count * set->links_each > SURFEL_LINKS_MOST || set->taps_each < 1 ||
 	    set->taps_each > 64)
 		return "it says more surfels or links than there can be";
+	if (!(set->extinction >= 0 && isfinite(set->extinction)))
+		return "its air is none";
 	if (!grid_head_fits(&set->grid))
 		return "its grid is not one";
 	if (!probes_head_fits(&set->probes))
@@ -138,6 +141,8 @@ static const char *check_surfels(const struct surfel_set *set)
 	if (!all_finite(&set->fixed_emissive[0][0], 3 * set->count) ||
 	    !all_finite(&set->fixed_other[0][0], 3 * set->count))
 		return "a surfel's light is not finite";
+	if (!all_within(&set->fixed_way[0][0], 4 * set->count, 0, FLT_MAX))
+		return "a surfel's light has come from nowhere";
 	return NULL;
 }
 
@@ -155,6 +160,8 @@ static const char *check_probes(const struct surfel_probes *probes, size_t surfe
 	    !all_finite(&probes->distance[0][0][0],
 			probes->count * SURFEL_PROBE_SIDE * SURFEL_PROBE_SIDE * 2))
 		return "a probe's light or distances are not finite";
+	if (!all_within(&probes->fixed_way[0][0], 2 * probes->count, 0, FLT_MAX))
+		return "a probe's light has come from nowhere";
 	for (size_t i = 0; i < probes->count; i++)
 		if (probes->alive[i] > 1)
 			return "a probe is neither alive nor dead";

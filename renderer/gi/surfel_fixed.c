@@ -16,7 +16,6 @@ struct fixed {
 	struct bake *bake;
 	struct scene dark;        /* the scene without what surrounds it */
 	struct path_scene emissive;
-	struct medium air;        /* takes what it scatters, too: that comes from the lattice alone */
 	int sets;                 /* of SAMPLER_SET samples a point */
 	atomic_size_t rays;
 };
@@ -30,7 +29,7 @@ static struct v3 point_start(const struct bake *bake, const struct bake_point *p
 static void light_emissive(struct fixed *f, size_t i)
 {
 	const struct bake *bake = f->bake;
-	double sum[3] = { 0 };
+	double sum[3] = { 0 }, way = 0, way2 = 0;
 	size_t rays = 0;
 
 	for (int k = 0; k < POINTS_EACH; k++) {
@@ -50,6 +49,8 @@ static void light_emissive(struct fixed *f, size_t i)
 				light = path_irradiance(&f->emissive, &sampler, p->position,
 							bake_normal(bake, p->side));
 				rays += light.rays;
+				way += (double)light.way;
+				way2 += (double)light.way2;
 				v3_put(light.total, e);
 				for (int c = 0; c < 3; c++)
 					sum[c] += (double)e[c];
@@ -58,6 +59,7 @@ static void light_emissive(struct fixed *f, size_t i)
 	}
 	for (int c = 0; c < 3; c++)
 		bake->set->fixed_emissive[i][c] = (float)(sum[c] / (POINTS_EACH * f->sets * SAMPLER_SET));
+	surfel_way_of((sum[0] + sum[1] + sum[2]) / 3, way, way2, bake->set->fixed_way[i]);
 	atomic_fetch_add(&f->rays, rays);
 }
 
@@ -74,6 +76,22 @@ static float power_weight(float a, float b)
 	return a * a / (a * a + b * b);
 }
 
+/* Light from outside of everything enters the air where the bounds begin. */
+static void add_sky(const struct bake *bake, struct v3 from, struct v3 way, float weight,
+		    const float radiance[3], double sum[5])
+{
+	const float metres = medium_exit(&bake->air, from, way);
+	const double passes = (double)(weight * expf(-bake->air.extinction * metres));
+	double mean = 0;
+
+	for (int c = 0; c < 3; c++) {
+		sum[c] += passes * (double)radiance[c];
+		mean += passes * (double)radiance[c] / 3;
+	}
+	sum[3] += mean * (double)metres;
+	sum[4] += mean * (double)metres * (double)metres;
+}
+
 /*
  * The environment, by its own density and by the cosine, weighed by the power
  * heuristic (Veach 1997): a sun is small, a sky is not.
@@ -84,10 +102,10 @@ static void light_environment(const struct fixed *f, size_t i)
 	const struct environment *environment = bake->scene->environment;
 	uint64_t key = random_start(bake->params.seed ^ UINT64_C(0x736b79), i);
 	uint32_t count = bake->set->links_each;
-	double sum[3] = { 0 };
+	double sum[5] = { 0 }; /* of three bands; times the way, and its square */
 
 	for (uint32_t j = 0; j < count; j++) {
-		float u[3], v[3], way[3], radiance[3], weight;
+		float u[3], v[3], way[3], radiance[3];
 		const struct bake_point *p;
 		struct v3 n, from;
 
@@ -98,25 +116,32 @@ static void light_environment(const struct fixed *f, size_t i)
 		from = point_start(bake, p);
 		float pdf = environment_sample(environment, (double)v[0], (double)v[1], way, radiance);
 		float cosine = v3_dot(v3_of(way), n);
-		if (cosine > 0 && is_open(bake, from, way)) {
-			weight = power_weight(pdf, cosine / TRACE_PI) * cosine / pdf *
-				 medium_passes(&f->air, from, v3_of(way), INFINITY);
-			for (int c = 0; c < 3; c++)
-				sum[c] += (double)(weight * radiance[c]);
-		}
+		if (cosine > 0 && is_open(bake, from, way))
+			add_sky(bake, from, v3_of(way), power_weight(pdf, cosine / TRACE_PI) * cosine / pdf,
+				radiance, sum);
 		v3_put(bake_cosine(n, u), way);
 		cosine = v3_dot(v3_of(way), n);
 		environment_radiance(environment, way, radiance);
 		if (cosine > 0 && radiance[0] + radiance[1] + radiance[2] > 0 &&
-		    is_open(bake, from, way)) {
-			weight = power_weight(cosine / TRACE_PI, environment_pdf(environment, way)) *
-				 TRACE_PI * medium_passes(&f->air, from, v3_of(way), INFINITY);
-			for (int c = 0; c < 3; c++)
-				sum[c] += (double)(weight * radiance[c]);
-		}
+		    is_open(bake, from, way))
+			add_sky(bake, from, v3_of(way),
+				power_weight(cosine / TRACE_PI, environment_pdf(environment, way)) * TRACE_PI,
+				radiance, sum);
 	}
 	for (int c = 0; c < 3; c++)
 		bake->set->fixed_other[i][c] += (float)(sum[c] / count);
+	bake->set->fixed_way[i][2] += (float)(sum[3] / count);
+	bake->set->fixed_way[i][3] += (float)(sum[4] / count);
+}
+
+/* What was summed so far. */
+static void settle_way(struct surfel_set *set, size_t i)
+{
+	const float *light = set->fixed_other[i];
+	float *way = set->fixed_way[i];
+
+	surfel_way_of(((double)light[0] + (double)light[1] + (double)light[2]) / 3, (double)way[2],
+		      (double)way[3], way + 2);
 }
 
 static void light_all(void *ctx, size_t begin, size_t end, int thread)
@@ -144,9 +169,7 @@ int bake_fixed(struct bake *bake)
 	f.dark.environment = NULL;
 	f.emissive.world = bake->world;
 	f.emissive.world.scene = &f.dark;
-	medium_init(&f.air, bake->params.absorption_per_m + bake->params.scattering_per_m, 0,
-		    bake->scene->min, bake->scene->max);
-	f.emissive.medium = f.air;
+	f.emissive.medium = bake->air;
 	f.sets = (bake->params.links + POINTS_EACH * SAMPLER_SET - 1) / (POINTS_EACH * SAMPLER_SET);
 	result = emitters_init(&f.emissive.emitters, &f.emissive.world);
 	if (result == GR_ERR_RANGE)
@@ -154,6 +177,8 @@ int bake_fixed(struct bake *bake)
 			    "a material's emission is not finite; a scene's import would have refused it");
 	if (result == GR_OK && f.emissive.emitters.count + (bake->scene->environment != NULL) > 0)
 		result = bake_run(bake, set->count, 4, light_all, &f);
+	for (size_t i = 0; i < set->count; i++)
+		settle_way(set, i);
 	set->rays += atomic_load(&f.rays);
 	if (bake->scene->environment)
 		set->rays += set->count * set->links_each * 2;

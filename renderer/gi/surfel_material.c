@@ -93,10 +93,10 @@ static enum fate bounce(const struct bake *bake, const struct ray_hit *hit,
 }
 
 /* What a mirror shows beside reflected light. */
-static void add_light(const struct bake *bake, const struct ray_hit *hit, struct v3 way,
-		      struct bake_end *out)
+static void add_light(const struct bake *bake, const struct ray_hit *hit, struct v3 from,
+		      struct v3 way, float metres, struct bake_end *out)
 {
-	float radiance[3] = { 0 };
+	float radiance[3] = { 0 }, passes, mean;
 
 	if (hit) {
 		if (v3_dot(v3_of(hit->normal), way) < 0 || bake->two_sided[hit->triangle])
@@ -107,8 +107,13 @@ static void add_light(const struct bake *bake, const struct ray_hit *hit, struct
 		v3_put(way, to);
 		environment_radiance(bake->scene->environment, to, radiance);
 	}
+	metres += hit ? hit->distance : medium_exit(&bake->air, from, way);
+	passes = expf(-bake->air.extinction * metres);
 	for (int c = 0; c < 3; c++)
-		out->light[c] += radiance[c];
+		out->light[c] += passes * radiance[c];
+	mean = passes * v3_mean(v3_of(radiance));
+	out->way += mean * metres;
+	out->way2 += mean * metres * metres;
 }
 
 enum bake_meets bake_meets(const struct bake *bake, uint32_t side)
@@ -124,6 +129,7 @@ void bake_follow(const struct bake *bake, struct v3 from, struct v3 way, uint64_
 		 struct bake_end *out)
 {
 	struct sampler sampler = { .key = key };
+	float metres = 0; /* to where the ray begins now */
 
 	*out = (struct bake_end){ .surfel = SURFEL_NONE };
 	for (uint32_t bounces = 0; bounces <= MIRRORS_MOST; bounces++) {
@@ -136,7 +142,7 @@ void bake_follow(const struct bake *bake, struct v3 from, struct v3 way, uint64_
 		v3_put(way, to);
 		bool met = rays_nearest_front(bake->world.rays, at, to, INFINITY, &hit);
 		if (bounces > 0)
-			add_light(bake, met ? &hit : NULL, way, out);
+			add_light(bake, met ? &hit : NULL, from, way, metres, out);
 		if (!met)
 			return;
 		back = v3_dot(v3_of(hit.normal), way) > 0;
@@ -145,6 +151,7 @@ void bake_follow(const struct bake *bake, struct v3 from, struct v3 way, uint64_
 			return;
 		}
 		fate = ENDS;
+		metres += hit.distance;
 		if (is_glossy(world_material(&bake->world, hit.triangle)))
 			fate = bounce(bake, &hit, &sampler, 2 * bounces, &from, &way);
 		if (fate == ENDS)

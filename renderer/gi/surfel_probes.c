@@ -60,10 +60,11 @@ static int reserve(struct surfel_probes *probes)
 	probes->directions = calloc(probes->links_each, sizeof *probes->directions);
 	probes->links = calloc(probes->count * probes->links_each, sizeof *probes->links);
 	probes->fixed = calloc(probes->count, sizeof *probes->fixed);
+	probes->fixed_way = calloc(probes->count, sizeof *probes->fixed_way);
 	probes->distance = calloc(probes->count, sizeof *probes->distance);
 	probes->alive = calloc(probes->count, sizeof *probes->alive);
-	return probes->directions && probes->links && probes->fixed && probes->distance &&
-			       probes->alive
+	return probes->directions && probes->links && probes->fixed && probes->fixed_way &&
+			       probes->distance && probes->alive
 		       ? GR_OK
 		       : GR_ERR_NOMEM;
 }
@@ -148,6 +149,13 @@ static void add_harmonics(float fixed[SURFEL_SH][3], const float way[3], float s
 			fixed[j][c] += share * sh[j] * radiance[c];
 }
 
+/* Sums until all is there. */
+static void add_way(float way[2], float light, float metres)
+{
+	way[0] += light * metres;
+	way[1] += light * metres * metres;
+}
+
 /* The environment, by its own density: a sun falls between links. */
 static void see_environment(const struct bake *bake, size_t i)
 {
@@ -162,10 +170,25 @@ static void see_environment(const struct bake *bake, size_t i)
 		sobol_point(key, k, u);
 		float pdf = environment_sample(bake->scene->environment, (double)u[0], (double)u[1],
 					       way, radiance);
-		if (!rays_blocked_along(bake->world.rays, from, way, INFINITY))
-			add_harmonics(probes->fixed[i], way, 1 / (pdf * (float)probes->links_each),
-				      radiance);
+		if (!rays_blocked_along(bake->world.rays, from, way, INFINITY)) {
+			float metres = medium_exit(&bake->air, v3_of(from), v3_of(way));
+			float share = expf(-bake->air.extinction * metres) /
+				      (pdf * (float)probes->links_each);
+
+			add_harmonics(probes->fixed[i], way, share, radiance);
+			add_way(probes->fixed_way[i], share * v3_mean(v3_of(radiance)), metres);
+		}
 	}
+}
+
+/* All light that arrives is the first coefficient over its function. */
+static void settle_way(struct surfel_probes *probes, size_t i)
+{
+	const float *all = probes->fixed[i][0];
+	float *way = probes->fixed_way[i];
+
+	surfel_way_of(((double)all[0] + (double)all[1] + (double)all[2]) / (3 * 0.282094792),
+		      (double)way[0], (double)way[1], way);
 }
 
 static void link_probe(const struct bake *bake, size_t i)
@@ -183,10 +206,13 @@ static void link_probe(const struct bake *bake, size_t i)
 		probes->links[i * probes->links_each + k] = end.surfel;
 		backs += end.back;
 		add_harmonics(probes->fixed[i], probes->directions[k], share, end.light);
+		probes->fixed_way[i][0] += share * end.way;
+		probes->fixed_way[i][1] += share * end.way2;
 	}
 	probes->alive[i] = (float)backs <= BACKS_MOST * (float)probes->links_each;
 	if (bake->scene->environment)
 		see_environment(bake, i);
+	settle_way(probes, i);
 	look_around(bake, i);
 }
 

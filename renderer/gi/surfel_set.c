@@ -10,6 +10,7 @@ static void probes_finish(struct surfel_probes *probes)
 	free(probes->directions);
 	free(probes->links);
 	free(probes->fixed);
+	free(probes->fixed_way);
 	free(probes->distance);
 	free(probes->alive);
 }
@@ -25,6 +26,7 @@ void surfel_set_destroy(struct surfel_set **set)
 	free(s->albedo);
 	free(s->fixed_emissive);
 	free(s->fixed_other);
+	free(s->fixed_way);
 	free(s->links);
 	free(s->taps);
 	free(s->grid.keys);
@@ -58,6 +60,8 @@ size_t surfel_set_parts(const struct surfel_set *set, struct surfel_part out[SUR
 		{ probes->fixed, probes->count * sizeof *probes->fixed },
 		{ probes->distance, probes->count * sizeof *probes->distance },
 		{ probes->alive, probes->count * sizeof *probes->alive },
+		{ set->fixed_way, set->count * sizeof *set->fixed_way },
+		{ probes->fixed_way, probes->count * sizeof *probes->fixed_way },
 	};
 	size_t bytes = 0;
 
@@ -80,7 +84,7 @@ uint64_t surfel_set_hash(const struct surfel_set *set)
 	crypto_generichash_state state;
 	uint8_t digest[16];
 	uint64_t hash;
-	const float lengths[2] = { set->spacing_m, set->radius_m };
+	const float lengths[3] = { set->spacing_m, set->radius_m, set->extinction };
 	const uint64_t counts[4] = { set->count, set->links_each, set->taps_each,
 				     set->probes.count };
 
@@ -93,6 +97,25 @@ uint64_t surfel_set_hash(const struct surfel_set *set)
 	crypto_generichash_final(&state, digest, sizeof digest);
 	memcpy(&hash, digest, sizeof hash);
 	return hash;
+}
+
+float surfel_thinned(const float way[2], float more)
+{
+	const float spread = way[1] / fmaxf(way[0], 1e-30f); /* metres */
+
+	if (!(more < 0 || more > 0))
+		return 1;
+	if (spread * fabsf(more) < 1e-3f)
+		return expf(-more * way[0] * (1 - 0.5f * spread * more));
+	return powf(fmaxf(1 + more * spread, 0.25f), -way[0] / spread);
+}
+
+void surfel_way_of(double light, double way, double way2, float out[2])
+{
+	const double mean = light > 0 ? way / light : 0;
+
+	out[0] = (float)mean;
+	out[1] = light > 0 ? (float)fmax(0, way2 / light - mean * mean) : 0;
 }
 
 static int16_t pack_16(float v)

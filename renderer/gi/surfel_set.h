@@ -88,6 +88,7 @@ struct surfel_probes {
 	 * emissive surfaces by way of mirrors; what they send straight here shading adds.
 	 */
 	float (*fixed)[SURFEL_SH][3];
+	float (*fixed_way)[2]; /* as the set's, of it */
 	/*
 	 * Distances to the surfaces around, metres, none more than two cells, for
 	 * visibility: mean and mean square a texel. Texel (x, y) holds the directions
@@ -112,6 +113,13 @@ struct surfel_set {
 	 * from the surfels together with E_indirect.
 	 */
 	float (*fixed_emissive)[3], (*fixed_other)[3];
+	/*
+	 * How far these have come through the air, weighed by what arrives: mean in
+	 * metres and variance of the first, and of the second. For air that is not what
+	 * it was when they were baked, which took `extinction` a metre (surfel_thinned).
+	 */
+	float (*fixed_way)[4];
+	float extinction; /* 1/m */
 	uint32_t *links;     /* count x links_each: a surfel, or SURFEL_NONE */
 	struct surfel_tap *taps; /* count x taps_each */
 	struct surfel_grid grid;
@@ -128,12 +136,21 @@ void surfel_set_destroy(struct surfel_set **set);
 uint64_t surfel_set_hash(const struct surfel_set *set);
 size_t surfel_set_bytes(const struct surfel_set *set);
 /* All arrays in a fixed order, for what treats them alike; returns the sum of their bytes. */
-#define SURFEL_PARTS 15
+#define SURFEL_PARTS 17
 struct surfel_part {
 	const void *data;
 	size_t bytes;
 };
 size_t surfel_set_parts(const struct surfel_set *set, struct surfel_part out[SURFEL_PARTS]);
+
+/*
+ * The share of fixed light that is left in air that takes `more` a metre than when it
+ * was baked; above 1 in less. Lengths of ways are taken to have a gamma distribution of
+ * that mean and variance, for which this is exact. shaders/surfel_air.glsl has the same.
+ */
+float surfel_thinned(const float way[2], float more);
+/* Mean and variance from a sum of what has arrived, and that times its way, and its square. */
+void surfel_way_of(double light, double way, double way2, float out[2]);
 
 /* Octahedral normals (Cigolle et al. 2014), 16 bit each. */
 uint32_t surfel_normal_pack(const float normal[3]);

@@ -200,6 +200,7 @@ static int update(struct gi_method *method, const struct render_frame *frame,
 	s->scattering = frame->scattering_per_m;
 	s->epoch = frame->gi_epoch;
 	s->version = light->version;
+	surfels_air_apply(s);
 	if (again) {
 		restart(s, light->lamps);
 		surfels_check_begin(s, (struct surfels_run){ 0, (uint32_t)s->count });
@@ -285,6 +286,7 @@ static void destroy(struct gi_method *method)
 	surfels_probes_finish(s);
 	surfels_share_finish(s);
 	surfels_check_finish(s);
+	surfels_air_finish(s);
 	surfels_smooth_finish(s);
 	surfels_upload_finish(s);
 	program_destroy(&s->light);
@@ -381,6 +383,8 @@ int gi_surfels_create(struct gi_method **out, const struct surfel_set *set,
 	result = surfels_upload(s, set);
 	if (result == GR_OK)
 		result = create_programs(s);
+	if (result == GR_OK)
+		result = surfels_air_init(s, set);
 	if (result == GR_OK)
 		result = surfels_smooth_init(s, set);
 	if (result == GR_OK)

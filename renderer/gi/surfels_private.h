@@ -40,6 +40,7 @@ enum surfels_unit {
 	SURFELS_UNIT_FOUND = 13, /* of the light pass; the next two of the gather */
 	SURFELS_UNIT_DIRECT = 13,
 	SURFELS_UNIT_OTHER = 14,
+	SURFELS_UNIT_WAYS = 13,	 /* of the probes' gather */
 	SURFELS_UNIT_PROBES = 8, /* shading from probes */
 	SURFELS_UNIT_DISTANCE = 9,
 	SURFELS_UNIT_ALIVE = 10,
@@ -91,13 +92,21 @@ struct surfels_share {
 	unsigned char set_hash[8];
 };
 
+/* Fixed light in air that changes (surfels_air.c). */
+struct surfels_air {
+	unsigned program;  /* 0: there is no such light */
+	float baked_in;    /* 1/m */
+	float more;        /* 1/m, that `emissive` and `other` stand for; so much more than baked_in */
+	struct surfels_buffer ways, emissive, other; /* as baked */
+};
+
 /* Spherical harmonics on a grid (surfels_probes.c). */
 struct surfels_probes {
 	unsigned program, check, block; /* check: looks for what is not finite */
 	size_t count;
 	uint32_t links_each;
 	struct dispatch all, each; /* coefficients; probes */
-	struct surfels_buffer links, basis, fixed, light, alive;
+	struct surfels_buffer links, basis, fixed, ways, light, alive;
 	unsigned distance; /* texture, octahedral maps with a border of one texel */
 };
 
@@ -126,6 +135,7 @@ struct surfels {
 	struct surfels_buffer first, members, keys; /* the grid */
 	struct surfels_share share;
 	struct surfels_probes probes;
+	struct surfels_air air;
 
 	/* What the light stands for. */
 	bool started, lit;
@@ -193,6 +203,14 @@ void surfels_share_restore(struct surfels *s);
 /* Rounds the newest result of this node's slice, for take(). */
 void surfels_share_pack(struct surfels *s);
 uint64_t surfels_share_hash(const struct surfels *s);
+
+/* surfels_air.c: `emissive` and `other` for the air that there is. */
+int surfels_air_init(struct surfels *s, const struct surfel_set *set);
+void surfels_air_finish(struct surfels *s);
+/* Does nothing in air that is as it was. */
+void surfels_air_apply(struct surfels *s);
+/* What a metre of the present air takes, 1/m. */
+float surfels_extinction(const struct surfels *s);
 
 /* surfels_probes.c */
 int surfels_probes_init(struct surfels *s, const struct surfel_set *set);

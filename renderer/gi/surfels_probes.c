@@ -72,6 +72,9 @@ static int upload_fixed(struct surfels *s, const struct surfel_probes *from)
 				 4 * number * sizeof *rows, rows);
 	free(rows);
 	if (result == GR_OK)
+		result = surfels_storage(s, &s->probes.ways, "ways of probes' light", GL_RG32F,
+					 from->count * sizeof *from->fixed_way, from->fixed_way);
+	if (result == GR_OK)
 		result = surfels_storage(s, &s->probes.light, "light of probes", GL_RGBA32F,
 					 4 * number * sizeof *rows, NULL);
 	return result;
@@ -184,6 +187,7 @@ void surfels_probes_finish(struct surfels *s)
 	surfels_storage_finish(&p->links);
 	surfels_storage_finish(&p->basis);
 	surfels_storage_finish(&p->fixed);
+	surfels_storage_finish(&p->ways);
 	surfels_storage_finish(&p->light);
 	surfels_storage_finish(&p->alive);
 	glDeleteTextures(1, &p->distance);
@@ -204,9 +208,11 @@ void surfels_probes_gather(struct surfels *s)
 	glBindBufferBase(GL_UNIFORM_BUFFER, SURFELS_BINDING_BLOCK, p->block);
 	glBindTextureUnit(SURFELS_UNIT_RADIOSITY, s->radiosity[s->current].texture);
 	glBindTextureUnit(SURFELS_UNIT_TEXELS, s->texels.texture);
+	glBindTextureUnit(SURFELS_UNIT_WAYS, p->ways.texture);
 	glUseProgram(p->program);
 	glProgramUniform2ui(p->program, 0, (unsigned)p->count * SURFEL_SH, p->links_each);
 	glProgramUniform1f(p->program, 1, sigma <= 0 ? 0 : sigma < 1 ? log2f(1 - sigma) : -1e6f);
+	glProgramUniform1f(p->program, 2, s->air.more);
 	glDispatchCompute(p->all.x, p->all.y, 1);
 	surfels_barrier();
 }

@@ -18,7 +18,7 @@ int surfels_storage(struct surfels *s, struct surfels_buffer *out, const char *w
 {
 	GLint64 most = 0;
 	GLint texels = 0;
-	size_t texel = format == GL_R32UI || format == GL_R32F ? 4 : format == GL_RGBA16F || format == GL_RG32UI ? 8 : 16;
+	size_t texel = format == GL_R32UI || format == GL_R32F ? 4 : format == GL_RGBA16F || format == GL_RG32UI || format == GL_RG32F ? 8 : 16;
 
 	glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
 	glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);

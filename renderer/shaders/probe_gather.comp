@@ -4,14 +4,17 @@
 layout(local_size_x = 64) in;
 
 #include "probe_grid.glsl"
+#include "surfel_air.glsl"
 
 layout(location = 0) uniform uvec2 counts;     // coefficients of all probes; links of each
 layout(location = 1) uniform float extinction; // log2 of what a metre lets through
+layout(location = 2) uniform float more;       // 1/m that the air takes, than when fixed_light was baked
 layout(binding = 8) uniform samplerBuffer radiosity;
 layout(binding = 9) uniform usamplerBuffer surfel_texels; // two a surfel
 layout(binding = 10) uniform usamplerBuffer links;
 layout(binding = 11) uniform samplerBuffer basis; // PROBE_SH a link
 layout(binding = 12) uniform samplerBuffer fixed_light;
+layout(binding = 13) uniform samplerBuffer ways; // one a probe: mean, variance
 layout(std430, binding = 12) writeonly buffer Light { vec4 light[]; };
 
 void main()
@@ -38,5 +41,8 @@ void main()
 		sum += b;
 	}
 	// radiance b/pi, each link 4 pi / links steradians
-	light[at] = vec4(texelFetch(fixed_light, int(at)).rgb + sum * (4.0 / float(counts.y)), 0.0);
+	vec3 fixed_now = texelFetch(fixed_light, int(at)).rgb *
+			 surfel_thinned(texelFetch(ways, int(probe)).rg, more);
+
+	light[at] = vec4(fixed_now + sum * (4.0 / float(counts.y)), 0.0);
 }

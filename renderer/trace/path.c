@@ -50,6 +50,18 @@ static void gain(struct path *path, struct v3 light)
 		path->light.indirect = v3_add(path->light.indirect, light);
 }
 
+/* Light of an emitter, which has come so many metres. */
+static void gain_from(struct path *path, struct v3 light, float metres)
+{
+	const float mean = v3_mean(light);
+
+	gain(path, light);
+	if (path->depth == 0 && !path->from_medium) {
+		path->light.way += mean * metres;
+		path->light.way2 += mean * metres * metres;
+	}
+}
+
 static float power_heuristic(float mine, float other)
 {
 	/* by the ratio: squares of large densities leave float's range */
@@ -173,9 +185,10 @@ static void from_emitters(struct path *path, float choose)
 	if (v3_black(sent) || !open_to(path, light.target))
 		return;
 	sent = v3_mul(v3_mul(path->throughput, sent), light.radiance);
-	gain(path, v3_scale(sent, power_heuristic(light.pdf, pdf) / light.pdf *
-				  medium_passes(&scene->medium, path->at.position, light.direction,
-						light.distance)));
+	sent = v3_scale(sent, power_heuristic(light.pdf, pdf) / light.pdf *
+				      medium_passes(&scene->medium, path->at.position, light.direction,
+						    light.distance));
+	gain_from(path, sent, light.distance);
 }
 
 static void from_sky(struct path *path)
@@ -242,9 +255,10 @@ static void meet_emitter(struct path *path, const struct surface_hit *hit, float
 
 	if (v3_black(hit->emission))
 		return;
-	gain(path, v3_scale(v3_mul(path->throughput, hit->emission),
-			    met_weight(pdf, emitters_pdf(&path->scene->emitters, hit->triangle,
-							 distance, cosine))));
+	gain_from(path, v3_scale(v3_mul(path->throughput, hit->emission),
+				 met_weight(pdf, emitters_pdf(&path->scene->emitters, hit->triangle,
+							      distance, cosine))),
+		  distance);
 }
 
 static struct v3 sky_radiance(const struct environment *sky, struct v3 direction)
@@ -498,5 +512,7 @@ struct path_light path_irradiance(const struct path_scene *scene, const struct s
 	follow(&path);
 	path.light.total = v3_scale(path.light.total, TRACE_PI);
 	path.light.indirect = v3_scale(path.light.indirect, TRACE_PI);
+	path.light.way *= TRACE_PI;
+	path.light.way2 *= TRACE_PI;
 	return path.light;
 }

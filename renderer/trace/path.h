@@ -28,6 +28,8 @@ struct path_scene {
 /* total, indirect: as in reference.h. */
 struct path_light {
 	struct v3 total, indirect;
+	/* Of what emitters send straight here: mean of the bands times metres of way, and their squares. */
+	float way, way2;
 	unsigned rays; /* traced for it */
 };
 
