@@ -61,8 +61,9 @@ tools_bench_barrier_LDADD = $(CLUSTER_LIBS) $(PROTOCOL_LIBS) -lpthread -lm
 # From the master to the last node, for updates of 200 B, and of 4 KB and 64 KB by a
 # parameter more: the protocol is built for these two with the table in ballast/.
 # `make bench-delivery`; scripts/results runs them.
-EXTRA_PROGRAMS = tools/bench-delivery-200 tools/bench-delivery-4k tools/bench-delivery-64k
-bench-delivery: $(EXTRA_PROGRAMS)
+DELIVERY_BENCHES = tools/bench-delivery-200 tools/bench-delivery-4k tools/bench-delivery-64k
+EXTRA_PROGRAMS = $(DELIVERY_BENCHES)
+bench-delivery: $(DELIVERY_BENCHES)
 CLEANFILES += $(EXTRA_PROGRAMS)
 DISTCLEANFILES = norm_api.h
 DELIVERY_SOURCES = \
@@ -90,3 +91,14 @@ tools_bench_delivery_64k_SOURCES = $(DELIVERY_BALLAST_SOURCES)
 tools_bench_delivery_64k_CPPFLAGS = $(DELIVERY_BALLAST_CPPFLAGS) -DBALLAST_WORDS=16000
 tools_bench_delivery_64k_CFLAGS = $(DELIVERY_BALLAST_CFLAGS)
 tools_bench_delivery_64k_LDADD = $(DELIVERY_BALLAST_LIBS)
+
+# Recorded sessions and shared light packed; `make bench-packing`.
+EXTRA_PROGRAMS += tools/bench-packing
+bench-packing: tools/bench-packing
+tools_bench_packing_SOURCES = \
+	tools/bench/packing.c tools/bench/packing.h \
+	tools/bench/packing_light.c \
+	tools/bench/codecs.c tools/bench/codecs.h
+tools_bench_packing_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(JSONC_CFLAGS) $(LZO_CFLAGS) $(CODEC_CFLAGS)
+tools_bench_packing_LDADD = tools/libgbench.a tools/libgtools.a $(RECORD_LIBS) $(RENDERER_LIBS) \
+	$(PROTOCOL_LIBS) $(CONFIG_LIBS) $(JSONC_LIBS) $(CODEC_LIBS)
