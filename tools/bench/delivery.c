@@ -150,8 +150,11 @@ static void print_row(const struct delivery_room *room, const struct cluster_opt
 		printf("not built | | | | |\n");
 		return;
 	}
-	printf("%.0f / %.0f / %.0f | ", MEDIAN(p50), MEDIAN(p99), MEDIAN(most));
-	if (isnan(floor))
+	if (isnan(MEDIAN(p50)))
+		printf("none came | ");
+	else
+		printf("%.0f / %.0f / %.0f | ", MEDIAN(p50), MEDIAN(p99), MEDIAN(most));
+	if (isnan(floor) || isnan(MEDIAN(p50)))
 		printf("- | ");
 	else
 		printf("%.2f / %.2f | ", MEDIAN(p50) / floor, MEDIAN(p99) / floor);
