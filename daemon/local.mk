@@ -61,6 +61,7 @@ daemon_grotto_node_SOURCES = \
 	daemon/node_report.c \
 	daemon/node_share.c daemon/node_share.h \
 	daemon/node_swap.c daemon/node_swap.h \
+	daemon/node_vitals.c daemon/node_vitals.h \
 	daemon/pictures.c daemon/pictures.h \
 	daemon/room_files.c daemon/room_files.h
 daemon_grotto_node_CFLAGS = $(DAEMON_CFLAGS)

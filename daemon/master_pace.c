@@ -37,8 +37,13 @@ static void say_why(const struct master *m, const struct fdp_peer_status *peer, 
 	const int64_t limit_ns = params.limit_ns ? params.limit_ns : m->params.layout->rates.barrier_deadline_ns;
 	const double ready_ms = (double)peer->ready_after_ns * 1e-6, draws_ms = (double)peer->render_us * 1e-3;
 
-	snprintf(why, WHY_MAX, "last ready %.1f ms after its frame began, %.1f are allowed; it draws for %.1f ms%s",
-		 ready_ms, (double)limit_ns * 1e-6, draws_ms,
+	const struct fdp_vitals_stage *longest = fdp_vitals_longest(&peer->vitals);
+	char stage[FDP_VITALS_NAME + 40] = "";
+
+	if (longest)
+		snprintf(stage, sizeof stage, ", of which %s takes %.1f", longest->name, longest->us * 1e-3);
+	snprintf(why, WHY_MAX, "last ready %.1f ms after its frame began, %.1f are allowed; it draws for %.1f ms%s%s",
+		 ready_ms, (double)limit_ns * 1e-6, draws_ms, stage,
 		 draws_ms < ready_ms / 2 ? ", so most of it goes by on the way or before it draws" : "");
 }
 
@@ -87,4 +92,16 @@ void master_write_pace(struct json *json, const struct fdp_peer_status *peer, in
 		json_f64(json, "pace_for_s", (double)(now_ns - peer->pace_since_ns) * 1e-9);
 	if (peer->pace == FDP_PACE_EVICTED && peer->out_until_ns > now_ns)
 		json_f64(json, "out_for_s", (double)(peer->out_until_ns - now_ns) * 1e-9);
+}
+
+void master_write_stages(struct json *json, const struct fdp_peer_status *peer)
+{
+	json_open(json, "stages", '[');
+	for (unsigned i = 0; i < peer->vitals.count; i++) {
+		json_open(json, NULL, '{');
+		json_string(json, "name", peer->vitals.stages[i].name);
+		json_f64(json, "ms", peer->vitals.stages[i].us * 1e-3);
+		json_close(json, '}');
+	}
+	json_close(json, ']');
 }

@@ -14,5 +14,7 @@ void master_note_pace(struct master *master, const struct fdp_master_event *even
 void master_note_evicted(struct master *master, const struct fdp_master_event *event);
 /* "pace", and with it what is known: "pace_for_s", "out_for_s". */
 void master_write_pace(struct json *json, const struct fdp_peer_status *peer, int64_t now_ns);
+/* "stages": where its time goes. */
+void master_write_stages(struct json *json, const struct fdp_peer_status *peer);
 
 #endif

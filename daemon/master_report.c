@@ -85,6 +85,8 @@ static void write_node(struct json *json, const struct master *m, size_t i, int6
 	json_u64(json, "swapped_frame", peer.swapped_frame);
 	json_f64(json, "ready_after_ms", (double)peer.ready_after_ns * 1e-6);
 	json_f64(json, "render_ms", (double)peer.render_us * 1e-3);
+	json_u64(json, "receive_bytes", peer.vitals.receive_bytes);
+	json_u64(json, "under_way", peer.under_way);
 	json_u64(json, "slices", peer.slices);
 	json_u64(json, "slices_late", peer.slices_late);
 	json_u64(json, "slice_bytes", peer.slice_bytes);
@@ -92,6 +94,7 @@ static void write_node(struct json *json, const struct master *m, size_t i, int6
 	if (peer.last_heard_ns > 0)
 		json_f64(json, "heard_ms_ago", (double)(now_ns - peer.last_heard_ns) * 1e-6);
 	write_clock(json, m, i, &peer, now_ns);
+	master_write_stages(json, &peer);
 	json_close(json, '}');
 }
 

@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/result.h"
 #include "daemon/node_frame.h"
+#include "daemon/node_vitals.h"
 #include "daemon/swap_wait.h"
 
 #include <errno.h>
@@ -281,6 +282,7 @@ static void on_second(void *ctx, int64_t now_ns)
 		notify_status("%s", fdp_node_state_name(state));
 	n->logged_swapped = n->counts.swapped;
 	log_send_failures(n, now_ns);
+	node_vitals_tell(n->renderer, n->fdp);
 	look_for_end(n, now_ns);
 	look_for_successor(n, now_ns);
 	loop_timer_set(n->loop, n->second_timer, now_ns + GR_NS_PER_S);
@@ -423,6 +425,7 @@ static int create_protocol(struct node *n)
 		.index = (uint16_t)n->params.index,
 		.name = layout->nodes[n->params.index].name,
 		.datagram_max = net_datagram_max(&layout->network),
+		.receive_bytes = net_receive_bytes(n->net),
 		.silence_ns = SILENCE_NS,
 		.masters = (unsigned)net_masters(layout),
 		.call_ns = call_after(layout),

@@ -396,6 +396,22 @@ int net_fds(const struct net *net, int fds[2])
 	return net->group_fd >= 0 ? 2 : 1;
 }
 
+uint32_t net_receive_bytes(const struct net *net)
+{
+	int fds[2], least = 0;
+	const int count = net_fds(net, fds);
+
+	for (int i = 0; i < count; i++) {
+		socklen_t len = sizeof least;
+		int bytes;
+
+		if (getsockopt(fds[i], SOL_SOCKET, SO_RCVBUF, &bytes, &len) == 0 && bytes > 0 &&
+		    (!least || bytes < least))
+			least = bytes;
+	}
+	return (uint32_t)least;
+}
+
 bool net_has_group(const struct net *net)
 {
 	return net->has_group;

@@ -55,6 +55,8 @@ void net_close(struct net **net);
 /* Descriptors to wait on; count 1 or 2. */
 int net_fds(const struct net *net, int fds[2]);
 void net_stats(const struct net *net, struct net_stats *out);
+/* Of the smallest receive buffer, as the kernel counts it (SO_RCVBUF); 0: not known. */
+uint32_t net_receive_bytes(const struct net *net);
 
 /* Whether there is a group: as the layout says, and with cast = "auto" where it can be opened. */
 bool net_has_group(const struct net *net);

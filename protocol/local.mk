@@ -8,6 +8,7 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/key.c protocol/key.h \
 	protocol/loss.h \
 	protocol/master.c protocol/master.h protocol/master_private.h \
+	protocol/master_bulk.c \
 	protocol/master_clock.c \
 	protocol/master_follow.c \
 	protocol/master_join.c \
@@ -18,12 +19,14 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/master_repair.c \
 	protocol/master_share.c \
 	protocol/master_way.c \
+	protocol/master_window.c \
 	protocol/message.c protocol/message.h \
 	protocol/node.c protocol/node.h protocol/node_private.h \
 	protocol/node_call.c \
 	protocol/node_clock.c \
 	protocol/node_frame.c \
 	protocol/node_share.c \
+	protocol/node_vitals.c \
 	protocol/outbox.c protocol/outbox.h \
 	protocol/pack.c protocol/pack.h \
 	protocol/pace.c protocol/pace.h \
@@ -35,5 +38,7 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/standby.c protocol/standby.h \
 	protocol/trip.h \
 	protocol/session_keys.c protocol/session_keys.h \
+	protocol/vitals.c protocol/vitals.h \
+	protocol/window.h \
 	protocol/wire.c protocol/wire.h
 protocol_libgprotocol_a_CFLAGS = $(AM_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS) $(ISAL_CFLAGS)

@@ -16,13 +16,14 @@ _Static_assert(FDP_HEADER_BYTES + FDP_BODY_MAX <= FDP_DATAGRAM_MIN,
 
 #define BIT(node) (UINT64_C(1) << (node))
 #define MASTER_KINDS (1u << FDP_JOIN | 1u << FDP_ACK | 1u << FDP_NACK | 1u << FDP_READY | \
-		      1u << FDP_SWAPPED | 1u << FDP_LEAVE)
+		      1u << FDP_SWAPPED | 1u << FDP_LEAVE | 1u << FDP_VITALS)
 #define SHARE_KINDS (1u << FDP_SLICE | 1u << FDP_LACK)
 
 static void to_caller(void *ctx, int to, const uint8_t *bytes, size_t len)
 {
 	struct fdp_master *m = ctx;
 
+	fdp_master_count_sent(m, to, bytes, len);
 	m->ops.send(m->ops.ctx, to, bytes, len);
 }
 
@@ -105,6 +106,7 @@ int fdp_master_create(struct fdp_master **out, const struct fdp_master_params *p
 	m->ops = *ops;
 	m->answers = -1;
 	m->bulk_node = (struct fdp_rate){ FDP_BULK_NODE_BYTES_S, FDP_BULK_NODE_BURST };
+	m->bulk_tick_bytes = FDP_BULK_TICK_BYTES;
 	m->bulk_all = (struct fdp_rate){ FDP_BULK_ALL_BYTES_S, FDP_BULK_ALL_BURST };
 	m->group = params->multicast && !params->probe_group;
 	randombytes_buf(m->nonce, sizeof m->nonce);
@@ -135,6 +137,8 @@ int fdp_master_create(struct fdp_master **out, const struct fdp_master_params *p
 		result = param_state_create(&m->state);
 	if (!result)
 		result = fdp_share_init(&m->share, params->share_bytes);
+	if (!result)
+		result = fdp_master_bulk_init(m);
 	if (result) {
 		fdp_master_destroy(&m);
 		return result;
@@ -156,6 +160,7 @@ void fdp_master_destroy(struct fdp_master **master)
 		return;
 	fdp_outbox_finish(&m->out);
 	fdp_share_finish(&m->share);
+	fdp_master_bulk_finish(m);
 	param_state_destroy(&m->state);
 	sodium_memzero(m->params.key, sizeof m->params.key);
 	sodium_memzero(m->key_to_nodes, sizeof m->key_to_nodes);
@@ -188,10 +193,13 @@ void fdp_master_announce(struct fdp_master *m, int to, enum fdp_kind kind)
 	fdp_master_say_time(m, to, &a);
 	fdp_outbox_send(&m->out, to, kind,
 			fdp_announce_encode(&a, fdp_outbox_body(&m->out), FDP_BODY_MAX));
+	fdp_master_mark_time(m, to, a.sent_ns);
 }
 
 static void announce_to_each(struct fdp_master *m, uint64_t nodes, enum fdp_kind kind)
 {
+	/* Who takes nothing out of its socket hears the PROBE that all get now and then. */
+	nodes = fdp_master_with_room(m, nodes, 0);
 	/*
 	 * In turns, so that each is the first now and then: its way is then no
 	 * longer than the way back, and that exchange is the one that its clock
@@ -262,8 +270,11 @@ void fdp_master_send_delta(struct fdp_master *m, int to)
 		fdp_outbox_again(&m->out, to, &m->delta, m->delta.count - 1u);
 }
 
+/* Who takes nothing out of its socket is asked where it is, and gets it when it answers. */
 static void send_delta_to(struct fdp_master *m, uint64_t live)
 {
+	if (!m->group)
+		live = fdp_master_with_room(m, live, m->delta.len);
 	if (m->group || count_bits(live) == m->params.node_count) {
 		/* To each of them the same datagram, signed once. */
 		fdp_master_send_delta(m, fdp_master_all(m));
@@ -310,6 +321,7 @@ int fdp_master_begin(struct fdp_master *m, const struct param_state *state, uint
 	if (frame <= m->frame || param_newest(state) > frame)
 		return GR_ERR_RANGE;
 	m->now_ns = now_ns;
+	m->due_ns = now_ns + (now_ns - m->barrier.begun_ns);
 	param_state_copy(m->state, state);
 	m->previous_frame = m->frame;
 	m->previous_hash = m->hash;
@@ -331,6 +343,7 @@ int fdp_master_begin(struct fdp_master *m, const struct param_state *state, uint
 		fdp_outbox_protect(&m->out, &m->delta, fdp_master_parity(m, m->delta.count));
 		send_delta_to(m, live);
 		fdp_master_tell_followers(m);
+		fdp_master_mark_frame(m, fdp_master_mask(m, fdp_peer_present));
 		m->spoke_ns = now_ns;
 	}
 	refresh_snapshots(m, now_ns);
@@ -365,8 +378,10 @@ void fdp_master_finish_if_over(struct fdp_master *m, int64_t now_ns)
 	live = fdp_master_mask(m, fdp_peer_counts);
 	m->swap_ns = swap.swap_ns = fdp_master_swap_time(m, live, now_ns);
 	if (live) {
+		const uint64_t told = m->group ? live : fdp_master_with_room(m, live, 0);
+
 		fdp_master_announce_to(m, live, FDP_SWAP);
-		if (count_bits(live) == m->params.node_count)
+		if (count_bits(told) == m->params.node_count)
 			m->all_told_ns = now_ns;
 		if (fdp_master_twice(m))
 			fdp_master_announce_to(m, live, FDP_SWAP);
@@ -411,6 +426,7 @@ void fdp_master_tick(struct fdp_master *m, int64_t now_ns)
 {
 	m->now_ns = now_ns;
 	tend_joiners(m, now_ns);
+	fdp_master_bulk_tick(m, now_ns);
 	if (now_ns >= m->keepalive_at) {
 		m->keepalive_at = now_ns + FDP_KEEPALIVE_NS;
 		/* Each SWAP says as much; and who calls has told nobody anything. */
@@ -438,7 +454,7 @@ void fdp_master_tick(struct fdp_master *m, int64_t now_ns)
 
 int64_t fdp_master_next(const struct fdp_master *m)
 {
-	int64_t next = m->keepalive_at;
+	int64_t next = fdp_master_bulk_next(m) < m->keepalive_at ? fdp_master_bulk_next(m) : m->keepalive_at;
 
 	if (fdp_master_heartbeat_at(m) < next)
 		next = fdp_master_heartbeat_at(m);
@@ -515,6 +531,7 @@ void fdp_master_peer(const struct fdp_master *m, size_t node, struct fdp_peer_st
 	out->pace = m->peers[node].pace.state;
 	out->pace_since_ns = m->peers[node].pace.since_ns;
 	out->out_until_ns = m->peers[node].pace.out_until_ns;
+	out->under_way = fdp_window_under_way(&m->peers[node].window_out, m->sent_to_all);
 	out->answer_ns = m->peers[node].trip.mean_ns;
 }
 

@@ -17,6 +17,7 @@
 #include "protocol/key.h"
 #include "protocol/pace.h"
 #include "protocol/params.h"
+#include "protocol/vitals.h"
 
 #include "base/item.h"
 
@@ -30,7 +31,7 @@
 #define FDP_TO_GROUP (-2) /* once, to the group that all are in */
 #define FDP_REASON_MAX 224
 #define FDP_ITEMS_MAX 166 /* parts of layout and scene together, see fdp_join */
-#define FDP_SHARE_MAX (4u << 20) /* bytes of the light that nodes share out, all slices together */
+#define FDP_SHARE_MAX (8u << 20) /* bytes of the light that nodes share out, all slices together */
 
 enum fdp_peer_state {
 	FDP_PEER_ABSENT,  /* never heard of, or left */
@@ -195,6 +196,8 @@ struct fdp_peer_status {
 	bool hears_group;          /* as it says, of late */
 	uint32_t render_us;        /* GPU and CPU time the node says it took */
 	uint64_t slices, slices_late, slice_bytes; /* of the light, from it, whole; after SWAP */
+	struct fdp_vitals vitals;                  /* as it told last, within a second; all 0: not yet */
+	uint64_t under_way;                        /* bytes sent that it has not taken out of its socket, as the kernel counts */
 	uint64_t plan;                             /* of its light, see struct fdp_join */
 	uint16_t plan_cost, plan_error;            /* as there */
 };

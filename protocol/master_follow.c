@@ -129,6 +129,9 @@ static void forget_room(struct fdp_master *m)
 	m->group = m->params.multicast && !m->params.probe_group;
 	m->told_way = FDP_WAY_NONE;
 	m->shared = m->share_changed = 0;
+	m->sent_to_all = 0;
+	m->fresh = false;
+	fdp_master_bulk_forget(m);
 	fdp_share_reset(&m->share);
 }
 

@@ -105,6 +105,7 @@ static void admit(struct fdp_master *m, unsigned node, const struct fdp_header *
 	peer->synced = peer->wants_snapshot = false;
 	peer->missed_row = 0;
 	fdp_pace_join(&peer->pace, now_ns);
+	fdp_window_start(&peer->window_out, m->sent_to_all);
 	peer->joined_ns = now_ns;
 	peer->mismatch_frame = 0;
 	peer->refused[0] = 0;
@@ -164,6 +165,8 @@ bool fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
 		if (!fdp_replay_take(&peer->window, header->sequence))
 			return false;
 		peer->status.last_heard_ns = now_ns;
+		/* It reads, but of the snapshot it has nothing. */
+		fdp_window_start(&peer->window_out, m->sent_to_all);
 		if (now_ns - peer->snapshot_ns >= m->params.probe_ns)
 			fdp_master_send_snapshot(m, node, now_ns);
 		return true;

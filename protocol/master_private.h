@@ -2,8 +2,9 @@
  * Inside the master's half of FDP: master.c has the frame, master_receive.c
  * what arrives, master_clock.c time, master_pace.c who does not keep up, master_join.c
  * who may take part and master_refuse.c why not, master_repair.c what is sent again,
- * master_parity.c what is sent ahead of losses, master_way.c the way to all,
- * master_follow.c the other masters, master_share.c the light that the nodes share out.
+ * master_parity.c what is sent ahead of losses, master_bulk.c what can wait, master_way.c
+ * the way to all, master_window.c what is on its way to each, master_follow.c the other
+ * masters, master_share.c the light that the nodes share out.
  */
 #ifndef GROTTO_PROTOCOL_MASTER_PRIVATE_H
 #define GROTTO_PROTOCOL_MASTER_PRIVATE_H
@@ -21,6 +22,7 @@
 #include "protocol/share.h"
 #include "protocol/state.h"
 #include "protocol/trip.h"
+#include "protocol/window.h"
 
 #define FDP_HASH_RING 64 /* frames whose hash an ACK may still name */
 #define FDP_PROBE_MOST_NS INT64_C(5000000) /* a long deadline is no reason to repair slowly */
@@ -49,6 +51,23 @@
 #define FDP_BULK_ALL_BURST 131072
 _Static_assert(FDP_BULK_NODE_BURST >= FDP_DATAGRAM_MAX, "a bucket must hold what is sent at once");
 
+/*
+ * What waits leaves so much at a time, so often: at 1 Gbit/s half of the link, and a delta
+ * finds no more before it than takes an eighth of a millisecond; and none when it comes
+ * on time, for shortly before nothing leaves.
+ */
+#define FDP_BULK_TICK_NS INT64_C(250000)
+#define FDP_BULK_TICK_BYTES 16384
+#define FDP_BULK_REST_NS INT64_C(300000)
+/*
+ * What is passed on as it comes: of a light that moves, what goes over 1 Gbit/s beside the
+ * frames. When a division begins all nodes send all of the light: where that is more, it is no
+ * more than what a delta can wait for, until each has sent its part. The rest waits.
+ */
+#define FDP_PASS_BYTES_S 110000000
+#define FDP_PASS_BURST 2097152
+#define FDP_FRESH_BURST 262144
+
 #define FDP_PATHS 64 /* ways of a SWAP that its lead is measured by */
 
 struct fdp_peer {
@@ -66,6 +85,7 @@ struct fdp_peer {
 	struct fdp_pace pace; /* of all its incarnations */
 	int64_t joined_ns;
 	struct fdp_bucket bulk;
+	struct fdp_window window_out; /* what is on its way to it */
 	uint32_t lost;        /* as its last report said, see fdp_report */
 	uint32_t lost_now;    /* said since the last frame began */
 	struct fdp_loss loss;
@@ -90,6 +110,8 @@ struct fdp_half {
 	uint64_t ready;   /* for that */
 	int64_t begun_ns; /* when it did */
 };
+
+struct fdp_want;
 
 struct fdp_master {
 	struct fdp_master_params params;
@@ -127,6 +149,14 @@ struct fdp_master {
 	uint64_t repair_budget;                 /* bytes left in this frame */
 	struct fdp_rate bulk_node, bulk_all;
 	struct fdp_bucket bulk; /* to all together */
+	struct fdp_bucket passed; /* of slices, as they came */
+	bool fresh;             /* the division has begun, and its first slices have not all come */
+	size_t bulk_tick_bytes; /* FDP_BULK_TICK_BYTES */
+	struct fdp_want *wants; /* pieces that wait: see master_bulk.c; NULL: nothing is shared */
+	size_t wanted, want_next; /* how many; whose turn it is */
+	int64_t bulk_at_ns;     /* when some of these leave */
+	int64_t due_ns;         /* when the next frame is to begin, as far as can be foreseen */
+	uint64_t sent_to_all;   /* of datagrams to all, for the windows */
 	unsigned loss; /* frames for which small messages still go twice */
 	int64_t asked_ns; /* who has not acknowledged the frame was last asked, or the frame began */
 	int64_t keepalive_at;
@@ -180,8 +210,35 @@ bool fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
 			const struct fdp_join *join, int64_t now_ns);
 void fdp_master_on_leave(struct fdp_master *m, unsigned node, int64_t now_ns);
 
+/* A datagram leaves. */
+void fdp_master_count_sent(struct fdp_master *m, int to, const uint8_t *bytes, size_t len);
+/* Whether so many bytes more may be on their way to it. What does not hurry leaves a quarter free. */
+bool fdp_master_has_room(const struct fdp_master *m, unsigned node, size_t bytes, bool hurries);
+/* Those of the nodes to which a message that hurries may go. */
+uint64_t fdp_master_with_room(const struct fdp_master *m, uint64_t nodes, size_t bytes);
+/* The frame's state, something with this time in it, has been sent to them. */
+void fdp_master_mark_frame(struct fdp_master *m, uint64_t nodes);
+void fdp_master_mark_time(struct fdp_master *m, int to, int64_t sent_ns);
+/* What the node speaks of was taken out of its socket, and what was sent before it. */
+void fdp_master_note_taken(struct fdp_master *m, unsigned node, const struct fdp_report *report);
+void fdp_master_note_vitals(struct fdp_master *m, unsigned node, const struct fdp_vitals *vitals);
+
 /* Whether so much may be sent to the node now besides the frame; counts it if so. */
 bool fdp_master_bulk(struct fdp_master *m, unsigned node, size_t bytes);
+bool fdp_master_bulk_to_all(struct fdp_master *m, size_t bytes);
+/* GR_OK, GR_ERR_NOMEM. */
+int fdp_master_bulk_init(struct fdp_master *m);
+void fdp_master_bulk_finish(struct fdp_master *m);
+/* All that waits is void. */
+void fdp_master_bulk_forget(struct fdp_master *m);
+/* The piece of a slice waits to leave for the node, or for the group that it is in. */
+bool fdp_master_waits(const struct fdp_master *m, unsigned node, unsigned index, uint64_t frame, unsigned piece);
+/* From now on it does so, for the node or FDP_TO_GROUP. */
+void fdp_master_want_piece(struct fdp_master *m, int to, unsigned index, uint64_t frame, unsigned piece);
+void fdp_master_bulk_tick(struct fdp_master *m, int64_t now_ns);
+int64_t fdp_master_bulk_next(const struct fdp_master *m);
+/* The node has a part in the present division. */
+bool fdp_master_takes_slices(const struct fdp_master *m, unsigned node);
 void fdp_master_send_snapshot(struct fdp_master *m, unsigned node, int64_t now_ns);
 /* What the node holds is wrong or useless: nothing that it acknowledged is a base. */
 void fdp_master_want_snapshot(struct fdp_master *m, unsigned node);

@@ -131,6 +131,7 @@ static void note_losses(struct fdp_master *m, unsigned node, const struct fdp_re
 static void on_report(struct fdp_master *m, unsigned node, enum fdp_kind kind,
 		      const struct fdp_report *report, int64_t now_ns)
 {
+	fdp_master_note_taken(m, node, report);
 	if (fdp_master_is_follower(m, node)) {
 		/* It draws nothing, and nobody waits for it. */
 		if (kind == FDP_ACK && state_agrees(m, node, report, now_ns))
@@ -153,6 +154,7 @@ static enum fdp_verdict dispatch(struct fdp_master *m, const struct fdp_header *
 				 const uint8_t *body, int64_t now_ns)
 {
 	struct fdp_report report;
+	struct fdp_vitals vitals;
 	struct fdp_nack nack;
 	uint64_t frame;
 
@@ -165,6 +167,11 @@ static enum fdp_verdict dispatch(struct fdp_master *m, const struct fdp_header *
 		if (m->ops.report)
 			m->ops.report(m->ops.ctx, h->sender, h->kind, &report);
 		on_report(m, h->sender, h->kind, &report, now_ns);
+		return FDP_GOOD;
+	case FDP_VITALS:
+		if (fdp_vitals_decode(body, h->payload_len, &vitals))
+			return FDP_BAD_FORMAT;
+		fdp_master_note_vitals(m, h->sender, &vitals);
 		return FDP_GOOD;
 	case FDP_NACK:
 		if (fdp_nack_decode(body, h->payload_len, &nack))

@@ -53,9 +53,18 @@ bool fdp_master_bulk(struct fdp_master *m, unsigned node, size_t bytes)
 
 	fdp_bucket_fill(one, &m->bulk_node, m->now_ns);
 	fdp_bucket_fill(&m->bulk, &m->bulk_all, m->now_ns);
-	if (one->left < bytes || m->bulk.left < bytes)
+	if (one->left < bytes || m->bulk.left < bytes || !fdp_master_has_room(m, node, bytes, false))
 		return false;
 	one->left -= bytes;
+	m->bulk.left -= bytes;
+	return true;
+}
+
+bool fdp_master_bulk_to_all(struct fdp_master *m, size_t bytes)
+{
+	fdp_bucket_fill(&m->bulk, &m->bulk_all, m->now_ns);
+	if (m->bulk.left < bytes)
+		return false;
 	m->bulk.left -= bytes;
 	return true;
 }
@@ -71,8 +80,10 @@ void fdp_master_send_snapshot(struct fdp_master *m, unsigned node, int64_t now_n
 	m->snapshot_present = present;
 	m->peers[node].snapshot_ns = now_ns;
 	/* If not now, then when it is due again. */
-	if (fdp_master_bulk(m, node, m->snapshot.len))
-		fdp_outbox_post(&m->out, (int)node, &m->snapshot);
+	if (!fdp_master_bulk(m, node, m->snapshot.len))
+		return;
+	fdp_outbox_post(&m->out, (int)node, &m->snapshot);
+	fdp_master_mark_frame(m, UINT64_C(1) << node);
 }
 
 static bool spend(struct fdp_master *m, const struct fdp_letter *letter, unsigned index)
@@ -122,7 +133,7 @@ void fdp_master_send_end_again(struct fdp_master *m, uint64_t nodes)
 	if (!m->delta.number || m->delta.frame != m->frame)
 		return;
 	for (unsigned i = 0; i < m->params.node_count; i++) {
-		if (!(nodes >> i & 1))
+		if (!(nodes >> i & 1) || !fdp_master_has_room(m, i, 0, true))
 			continue;
 		if (!spend(m, &m->delta, end))
 			return;

@@ -23,6 +23,15 @@ static uint64_t held_bytes(const struct fdp_master *m)
 	return bytes;
 }
 
+/* Of each slice of the division one came whole. */
+static bool all_came(const struct fdp_master *m)
+{
+	for (unsigned i = 0; i < m->share.count; i++)
+		if (!fdp_share_newest(&m->share, i))
+			return false;
+	return true;
+}
+
 void fdp_master_share_begin(struct fdp_master *m, uint64_t live)
 {
 	uint64_t again;
@@ -37,7 +46,10 @@ void fdp_master_share_begin(struct fdp_master *m, uint64_t live)
 			fdp_share_divide(&m->share, m->frame, (unsigned)__builtin_popcountll(live));
 		else
 			fdp_share_reset(&m->share);
+		fdp_master_bulk_forget(m);
+		m->fresh = live != 0;
 	}
+	m->fresh = m->fresh && !all_came(m);
 	again = 4 * held_bytes(m);
 	for (size_t i = 0; i < m->params.node_count; i++) {
 		m->pass_budget[i] = 4 * fdp_share_slice_max(&m->share);
@@ -53,6 +65,13 @@ static bool has_slice(const struct fdp_master *m, unsigned node, unsigned *out_i
 	       fdp_peer_counts(m->peers[node].state);
 }
 
+bool fdp_master_takes_slices(const struct fdp_master *m, unsigned node)
+{
+	unsigned index;
+
+	return has_slice(m, node, &index);
+}
+
 static void send_lack(struct fdp_master *m, unsigned node, const struct fdp_lack *lack)
 {
 	for (int i = 0; i < (fdp_master_twice(m) ? 2 : 1); i++)
@@ -60,17 +79,38 @@ static void send_lack(struct fdp_master *m, unsigned node, const struct fdp_lack
 				fdp_lack_encode(lack, fdp_outbox_body(&m->out), FDP_BODY_MAX));
 }
 
-/* To all that count but the one that it is from. */
-static void pass_on(struct fdp_master *m, unsigned from, const uint8_t *body, size_t len)
+/* Whether so much, of this slice, may be passed on as it comes. */
+static bool may_pass(struct fdp_master *m, const struct fdp_piece *piece, size_t len)
+{
+	const uint64_t light = (uint64_t)piece->len * piece->count * (m->group ? 1 : piece->count - 1u);
+	const struct fdp_rate rate = m->fresh && light > FDP_PASS_BURST ? (struct fdp_rate){ m->bulk_all.bytes_s, FDP_FRESH_BURST } :
+						(struct fdp_rate){ FDP_PASS_BYTES_S, FDP_PASS_BURST };
+
+	fdp_bucket_fill(&m->passed, &rate, m->now_ns);
+	if (m->passed.left < len)
+		return false;
+	m->passed.left -= len;
+	return true;
+}
+
+/* To all that count but the one that it is from: at once, or when there is room. */
+static void pass_on(struct fdp_master *m, unsigned from, const struct fdp_piece *piece, const uint8_t *body,
+		    size_t len)
 {
 	const uint64_t to = m->shared & fdp_master_mask(m, fdp_peer_counts) & ~BIT(from);
 
 	for (size_t i = 0; i < m->params.node_count; i++) {
 		if (!(to & BIT(i)))
 			continue;
-		memcpy(fdp_outbox_body(&m->out), body, len);
-		fdp_outbox_send(&m->out, m->group ? FDP_TO_GROUP : (int)i, FDP_SLICE, len);
+		const int wire = m->group ? FDP_TO_GROUP : (int)i;
+
 		m->share.counts.bytes_sent += len - FDP_PIECE_HEAD;
+		if ((!m->group && !fdp_master_has_room(m, (unsigned)i, len, false)) || !may_pass(m, piece, len)) {
+			fdp_master_want_piece(m, wire, piece->index, piece->frame, piece->at / piece->chunk);
+		} else {
+			memcpy(fdp_outbox_body(&m->out), body, len);
+			fdp_outbox_send(&m->out, wire, FDP_SLICE, len);
+		}
 		if (m->group)
 			break;
 	}
@@ -116,7 +156,7 @@ enum fdp_verdict fdp_master_on_slice(struct fdp_master *m, unsigned node, const 
 	if (result == FDP_FRAGMENT_AGAIN)
 		return FDP_GOOD;
 	m->pass_budget[node] -= len;
-	pass_on(m, node, body, len);
+	pass_on(m, node, &piece, body, len);
 	if (result == FDP_FRAGMENT_WHOLE)
 		count_whole(m, node, slice);
 	else if (fdp_share_ask(&m->share, index, slice, fdp_piece_sure(&piece), false, now_ns,
@@ -142,6 +182,27 @@ void fdp_master_note_slice(struct fdp_master *m, unsigned node, uint64_t frame, 
 		send_lack(m, node, &lack);
 }
 
+/*
+ * Of a light that moves now or never: what is left out is asked for again, if it is
+ * still of use. Of one that rests when there is time. False: no more now.
+ */
+static bool send_again(struct fdp_master *m, unsigned node, unsigned index, const struct fdp_slice *slice,
+		       unsigned piece)
+{
+	size_t len;
+
+	if (slice->frame + 1 < m->frame) {
+		fdp_master_want_piece(m, (int)node, index, slice->frame, piece);
+		return true;
+	}
+	len = fdp_share_write(&m->share, index, slice, piece, fdp_outbox_body(&m->out),
+			      m->out.datagram_max - FDP_HEADER_BYTES);
+	if (!len || !fdp_master_bulk(m, node, len))
+		return false;
+	fdp_outbox_send(&m->out, (int)node, FDP_SLICE, len);
+	return true;
+}
+
 enum fdp_verdict fdp_master_on_lack(struct fdp_master *m, unsigned node, const uint8_t *body,
 				    size_t len)
 {
@@ -155,21 +216,18 @@ enum fdp_verdict fdp_master_on_lack(struct fdp_master *m, unsigned node, const u
 	if (lack.index >= m->share.count)
 		return FDP_BAD_FORMAT;
 	slice = fdp_share_find(&m->share, lack.index, lack.frame);
-	for (unsigned i = 0; slice && i < slice->pieces; i++) {
-		size_t piece_len;
-
-		if (!fdp_slice_answers(slice, &lack, i))
+	if (!slice || !fdp_master_takes_slices(m, node))
+		return FDP_GOOD;
+	for (unsigned i = 0; i < slice->pieces; i++) {
+		if (!fdp_slice_answers(slice, &lack, i) ||
+		    fdp_master_waits(m, node, lack.index, lack.frame, i))
 			continue;
-		piece_len =
-			fdp_share_write(&m->share, lack.index, slice, i, fdp_outbox_body(&m->out),
-					m->out.datagram_max - FDP_HEADER_BYTES);
-		/* What is left out is asked for again. */
-		if (!piece_len || m->lack_budget[node] < piece_len || !fdp_master_bulk(m, node, piece_len))
+		if (m->lack_budget[node] < slice->chunk || !send_again(m, node, lack.index, slice, i))
 			break;
-		m->lack_budget[node] -= piece_len;
+		m->lack_budget[node] -= slice->chunk;
 		m->share.counts.repairs++;
-		fdp_outbox_send(&m->out, (int)node, FDP_SLICE, piece_len);
 	}
+	fdp_master_bulk_tick(m, m->now_ns);
 	return FDP_GOOD;
 }
 

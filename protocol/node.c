@@ -77,6 +77,7 @@ int fdp_node_create(struct fdp_node **out, const struct fdp_node_params *params,
 	n->params = *params;
 	strcpy(n->name, params->name);
 	n->params.name = n->name;
+	n->vitals.receive_bytes = params->receive_bytes;
 	if (!n->params.join_ns)
 		n->params.join_ns = FDP_JOIN_DEFAULT_NS;
 	if (!n->params.silence_ns)
@@ -342,6 +343,7 @@ void fdp_node_tick(struct fdp_node *n, int64_t now_ns)
 	fdp_node_serve_call(n, now_ns);
 	if (n->status == FDP_NODE_LIVE) {
 		fdp_node_frame_tick(n, now_ns);
+		fdp_node_vitals_tick(n, now_ns);
 		return;
 	}
 	if (!n->guards && (!n->asked || now_ns - n->asked_ns >= ask_again_ns(n)))
@@ -363,7 +365,8 @@ int64_t fdp_node_next(const struct fdp_node *n)
 		return ask < next ? ask : next;
 	}
 	frame_next = fdp_node_frame_next(n);
-	return frame_next < next ? frame_next : next;
+	next = frame_next < next ? frame_next : next;
+	return fdp_node_vitals_next(n) < next ? fdp_node_vitals_next(n) : next;
 }
 
 const struct param_state *fdp_node_params_state(const struct fdp_node *n)

@@ -50,6 +50,7 @@ struct fdp_node_params {
 	uint64_t plan; /* as struct fdp_join's; nodes of one room must have one */
 	uint16_t plan_cost, plan_error; /* as there */
 	size_t datagram_max;
+	uint32_t receive_bytes; /* of its socket's buffer, SO_RCVBUF; the master keeps what is under way below. 0: not told */
 	int64_t join_ns;    /* between two requests to join; 0: 200 ms */
 	int64_t silence_ns; /* master counts as lost after this; 0: 2 s */
 	unsigned masters;   /* of the layout, 0 or 1: one */
@@ -112,6 +113,8 @@ void fdp_node_share(const struct fdp_node *node, struct fdp_share_counts *out);
  */
 int fdp_node_replan(struct fdp_node *node, uint64_t plan, uint16_t plan_cost, uint16_t plan_error,
 		    size_t share_bytes);
+/* Where its time goes, told to the master once a second: the first FDP_VITALS_STAGES of them. */
+void fdp_node_stages(struct fdp_node *node, const struct fdp_vitals_stage *stages, unsigned count);
 
 void fdp_node_leave(struct fdp_node *node, int64_t now_ns);
 enum fdp_node_state fdp_node_status(const struct fdp_node *node);

@@ -12,7 +12,7 @@ void fdp_node_frame_reset(struct fdp_node *n)
 	n->joined_sequence = 0;
 	n->current = (struct fdp_node_frame){ 0 };
 	n->swapped_frame = n->swapped_count = 0;
-	n->swap_ns = 0;
+	n->swap_ns = n->vitals_ns = 0;
 	n->nacked_ns = n->gap_ns = 0;
 	n->repair = (struct fdp_trip){ 0, 0 };
 	n->wait_ns = n->retry_ns;

@@ -18,7 +18,7 @@
 
 #include "protocol/message.h"
 
-#define FDP_SLICE_PIECES_MAX 8192
+#define FDP_SLICE_PIECES_MAX 12288
 #define FDP_SHARE_LANES 2
 /*
  * A piece is missing, and not merely overtaken, when the third one after it has

@@ -20,6 +20,7 @@
 
 #define FDP_VERSION 4
 #define FDP_HEADER_BYTES 64
+#define FDP_KIND_AT 5
 #define FDP_MAC_AT 48
 #define FDP_MAC_BYTES 16
 #define FDP_SENDER_MASTER 0xffff /* less the master's index in the layout */
@@ -57,6 +58,7 @@ enum fdp_kind {
 	FDP_SLICE,    /* both: a piece of a slice of the light */
 	FDP_LACK,     /* both: these pieces of a slice are missing */
 	FDP_BEACON,   /* master: this is the session, for those who are not in it */
+	FDP_VITALS,   /* node: how much its socket holds, where its time goes */
 	FDP_KINDS
 };
 

@@ -37,6 +37,7 @@ PROTOCOL_TESTS = \
 	tests/unit/test_trust \
 	tests/unit/test_swap \
 	tests/unit/test_way \
+	tests/unit/test_window \
 	tests/unit/test_wire
 check_PROGRAMS += $(PROTOCOL_TESTS)
 TESTS += $(PROTOCOL_TESTS)
@@ -109,6 +110,9 @@ tests_unit_test_swap_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_way_SOURCES = tests/unit/test_way.c $(CLUSTER_SIM_SOURCES)
 tests_unit_test_way_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_way_LDADD = $(PROTOCOL_TEST_LDADD)
+tests_unit_test_window_SOURCES = tests/unit/test_window.c $(SHARE_ROOM_SOURCES)
+tests_unit_test_window_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_unit_test_window_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_wire_SOURCES = tests/unit/test_wire.c tests/unit/unit.h
 tests_unit_test_wire_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_wire_LDADD = $(PROTOCOL_TEST_LDADD)

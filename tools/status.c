@@ -100,6 +100,31 @@ static void print_nodes(struct json_object *status)
 	}
 }
 
+/* Of nodes that are out of step: where their time goes. */
+static void print_stages(struct json_object *status)
+{
+	struct json_object *nodes = report_member(status, "nodes");
+	size_t count = json_object_is_type(nodes, json_type_array) ? json_object_array_length(nodes) : 0;
+
+	for (size_t i = 0; i < count; i++) {
+		struct json_object *node = json_object_array_get_idx(nodes, i);
+		struct json_object *stages = report_member(node, "stages");
+		size_t n = json_object_is_type(stages, json_type_array) ? json_object_array_length(stages) : 0;
+
+		if (!report_member(node, "pace_for_s"))
+			continue;
+		printf("%s does not keep up: ready %.1f ms after a frame begins, draws for %.1f",
+		       report_text(node, "name"), report_number(node, "ready_after_ms"),
+		       report_number(node, "render_ms"));
+		for (size_t k = 0; k < n; k++) {
+			struct json_object *stage = json_object_array_get_idx(stages, k);
+
+			printf("%s %s %.1f", k ? "," : ":", report_text(stage, "name"), report_number(stage, "ms"));
+		}
+		printf("\n");
+	}
+}
+
 #define LIGHT_MAX 256
 
 /* How a node computes light, and what it expects where it chose itself; "" where it is not said. */
@@ -239,6 +264,7 @@ static void print_status(struct json_object *status)
 	       (long long)report_count(status, "frame"), report_number(status, "uptime_s"));
 	print_masters(status);
 	print_nodes(status);
+	print_stages(status);
 	print_tracking(status);
 	printf("\n");
 	print_skew(status, "swap skew, told", "skew_told_us");

@@ -82,6 +82,7 @@ void sim_start_node(struct sim *s, int node)
 		.contents = sim_contents,
 		.datagram_max = s->datagram_max,
 		.share_bytes = s->share_bytes,
+		.receive_bytes = s->receive_bytes,
 	};
 
 	n->sim = s;

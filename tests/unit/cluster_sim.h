@@ -73,6 +73,7 @@ struct sim {
 	bool multicast, lamps; /* lamps: the larger parameters change every frame too */
 	bool still, wand;      /* nothing but time changes; all that is tracked does */
 	unsigned evict_frames;
+	uint32_t receive_bytes; /* that nodes announce; 0: they do not */
 	struct fdp_pace_params pace;
 	int64_t byte_ns;      /* that a byte takes on the master's link; 0: none */
 	int64_t link_free_ns; /* when the link has sent all that is queued */

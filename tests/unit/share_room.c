@@ -99,6 +99,7 @@ void share_room_init(struct share_room *room, size_t nodes, size_t bytes, uint64
 	sim_init(&room->sim, nodes, seed);
 	room->bytes = bytes;
 	room->still_after = UINT64_MAX;
+	room->sim.receive_bytes = 8 << 20; /* as a daemon has it, where the system gives so much */
 	room->sim.share_bytes = bytes < 2048 ? 4096 : bytes;
 	room->sim.begin_light = begin_light;
 	room->sim.light_done = light_done;
