@@ -1,19 +1,30 @@
 # tests of Polhemus' trackers; MOCK_* are tests/tracking.mk's
-check_PROGRAMS += tests/unit/test_polhemus
-TESTS += tests/unit/test_polhemus
-tests_unit_test_polhemus_SOURCES = tests/unit/test_polhemus.c tests/unit/polhemus_make.h tests/unit/unit.h
-tests_unit_test_polhemus_CFLAGS = $(TEST_CFLAGS)
-tests_unit_test_polhemus_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
+POLHEMUS_TESTS = tests/unit/test_polhemus_decode tests/unit/test_polhemus_stream
+check_PROGRAMS += $(POLHEMUS_TESTS)
+TESTS += $(POLHEMUS_TESTS)
+tests_unit_test_polhemus_decode_SOURCES = tests/unit/test_polhemus_decode.c \
+	tests/unit/polhemus_make.h tests/unit/unit.h
+tests_unit_test_polhemus_decode_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_polhemus_decode_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
+tests_unit_test_polhemus_stream_SOURCES = tests/unit/test_polhemus_stream.c \
+	tests/unit/polhemus_make.h tests/unit/unit.h
+tests_unit_test_polhemus_stream_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_polhemus_stream_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
 
-if HAVE_UMOCKDEV
-check_PROGRAMS += tests/unit/test_polhemus_usb
-TESTS += tests/unit/test_polhemus_usb
-endif
-tests_unit_test_polhemus_usb_SOURCES = tests/unit/test_polhemus_usb.c \
+POLHEMUS_MOCKED = tests/unit/test_polhemus_usb tests/unit/test_polhemus_life
+POLHEMUS_MOCKS = tests/unit/polhemus_fixture.h tests/unit/polhemus_make.h \
 	tests/unit/mock_polhemus.c tests/unit/mock_polhemus.h \
-	tests/unit/mock_usb.c tests/unit/mock_usb.h tests/unit/polhemus_make.h $(MOCK_SOURCES)
+	tests/unit/mock_usb.c tests/unit/mock_usb.h $(MOCK_SOURCES)
+if HAVE_UMOCKDEV
+check_PROGRAMS += $(POLHEMUS_MOCKED)
+TESTS += $(POLHEMUS_MOCKED)
+endif
+tests_unit_test_polhemus_usb_SOURCES = tests/unit/test_polhemus_usb.c $(POLHEMUS_MOCKS)
 tests_unit_test_polhemus_usb_CFLAGS = $(MOCK_CFLAGS)
 tests_unit_test_polhemus_usb_LDADD = $(MOCK_LIBS)
+tests_unit_test_polhemus_life_SOURCES = tests/unit/test_polhemus_life.c $(POLHEMUS_MOCKS)
+tests_unit_test_polhemus_life_CFLAGS = $(MOCK_CFLAGS)
+tests_unit_test_polhemus_life_LDADD = $(MOCK_LIBS)
 
 # Fuzzers: see tests/config.mk.
 EXTRA_DIST += \

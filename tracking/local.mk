@@ -17,7 +17,7 @@ tracking_libgtracking_a_SOURCES = \
 	tracking/hotplug.c tracking/hotplug.h \
 	tracking/hydra.h tracking/hydra_decode.c tracking/hydra_device.c \
 	tracking/liberty.c tracking/liberty.h \
-	tracking/polhemus.h tracking/polhemus_private.h tracking/polhemus_device.c \
+	tracking/polhemus.h tracking/polhemus_private.h tracking/polhemus_device.c tracking/polhemus_find.c \
 	tracking/polhemus_liberty.c tracking/polhemus_viper.c \
 	tracking/polhemus_reports.c tracking/polhemus_reports.h \
 	tracking/polhemus_stream.c tracking/polhemus_stream.h \

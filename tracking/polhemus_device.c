@@ -6,37 +6,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define VENDOR 0x0f44
 #define SILENCE_NS (2 * GR_NS_PER_S) /* then it is set up again */
-#define PRODUCTS 4
-
-struct model {
-	const char *kind, *name;
-	const struct polhemus_talk *talk;
-	double rate_hz; /* usual */
-	uint16_t products[PRODUCTS], bare[PRODUCTS]; /* bare: before its firmware is loaded; 0 ends */
-};
-
-static const struct model models[TRACK_POLHEMUS_MODELS] = {
-	[TRACK_POLHEMUS_MODEL_VIPER] = { "viper", "Polhemus VIPER", &polhemus_viper, 240,
-					 { 0xbf01 }, { 0 } },
-	[TRACK_POLHEMUS_MODEL_LIBERTY] = { "liberty", "Polhemus LIBERTY", &polhemus_liberty, 240,
-					   { 0xff20, 0xff12 }, { 0xff21, 0xff11 } },
-	[TRACK_POLHEMUS_MODEL_PATRIOT] = { "patriot", "Polhemus PATRIOT", &polhemus_liberty, 60,
-					   { 0xef20, 0xef12 }, { 0xef21, 0xef11 } },
-};
-
-static bool among(const uint16_t *products, uint16_t product)
-{
-	for (int i = 0; i < PRODUCTS && products[i]; i++)
-		if (products[i] == product)
-			return true;
-	return false;
-}
 
 /* ---- what comes ---- */
 
-static void take(void *ctx, const uint8_t *bytes, size_t len)
+void polhemus_take(void *ctx, const uint8_t *bytes, size_t len)
 {
 	struct polhemus *p = ctx;
 	const uint8_t *frame;
@@ -51,7 +25,6 @@ static void take(void *ctx, const uint8_t *bytes, size_t len)
 		while ((r = track_polhemus_stream_next(&p->stream, &frame, &frame_len)) !=
 		       GR_NOTHING) {
 			if (r == GR_OK) {
-				p->frames++;
 				p->heard_ns = track_device_now(&p->device);
 				p->talk->frame(p, frame, frame_len);
 			} else if (p->running) {
@@ -116,7 +89,7 @@ bool polhemus_drain(struct polhemus *p, int quiet_ms, int most_ms)
 	return r != GR_OK;
 }
 
-static enum track_state start(struct polhemus *p, char *why, size_t size)
+enum track_state polhemus_start(struct polhemus *p, char *why, size_t size)
 {
 	enum track_state state;
 
@@ -129,7 +102,7 @@ static enum track_state start(struct polhemus *p, char *why, size_t size)
 	return state;
 }
 
-static void be_silent(struct polhemus *p)
+void polhemus_be_silent(struct polhemus *p)
 {
 	p->running = false;
 	if (p->usb.failed)
@@ -144,107 +117,14 @@ static void close_polhemus(struct track_device *device)
 {
 	struct polhemus *p = (struct polhemus *)device;
 
-	be_silent(p);
+	polhemus_be_silent(p);
 	track_usb_end(&p->usb);
 	p->node = NULL;
 }
 
-static bool is_the_one(const struct polhemus *p)
-{
-	return !p->serial[0] || !strcmp(p->serial, p->node->serial) ||
-	       !strcmp(p->serial, p->said_serial);
-}
-
-/* TRACK_ABSENT: it is another one. */
-static enum track_state try_node(struct polhemus *p, struct track_usb_node *node, char *why,
-				 size_t size)
-{
-	char said[TRACK_WHY] = "";
-	enum track_state state = track_usb_open(&p->usb, node, take, p, why, size);
-	const char *serial;
-
-	if (state != TRACK_RUNNING)
-		return state;
-	p->node = node;
-	p->said_serial[0] = '\0';
-	if (p->talk->says_serial || is_the_one(p))
-		state = start(p, said, sizeof said);
-	if (state == TRACK_RUNNING && !is_the_one(p)) {
-		be_silent(p);
-		state = TRACK_ABSENT;
-	}
-	serial = p->said_serial[0] ? p->said_serial : node->serial;
-	if (state == TRACK_RUNNING)
-		snprintf(why, size, "%s, USB %s, serial number %s%s%.100s", node->devnode, node->path,
-			 serial[0] ? serial : "not said", said[0] ? "; " : "", said);
-	else
-		snprintf(why, size, "%s: %.180s", node->devnode, said);
-	if (state != TRACK_RUNNING)
-		track_usb_close(&p->usb);
-	return state;
-}
-
-/* Nothing fits: what is nearest to it. */
-static enum track_state none(const struct polhemus *p, const struct model *m, char *why, size_t size)
-{
-	const int count = p->usb.count;
-
-	for (int i = 0; i < count; i++) {
-		const struct track_usb_node *node = &p->usb.nodes[i];
-
-		if (!among(m->bare, node->product) || (p->path[0] && strcmp(p->path, node->path) != 0))
-			continue;
-		snprintf(why, size,
-			 "the %s at USB %s (0f44:%04x) has no firmware yet: load the maker's with "
-			 "fxload from a udev rule, then plug it in again",
-			 m->name, node->path, node->product);
-		return TRACK_FAILED;
-	}
-	if (p->serial[0])
-		snprintf(why, size, "no %s with serial number %s%s%s is plugged in", m->name,
-			 p->serial, p->path[0] ? " at USB " : "", p->path);
-	else if (p->path[0])
-		snprintf(why, size, "no %s is plugged in at USB %s", m->name, p->path);
-	else if (p->params.number)
-		snprintf(why, size, "no %s number %d is plugged in", m->name, p->params.number);
-	else
-		snprintf(why, size, "no %s (0f44:%04x) is plugged in", m->name, m->products[0]);
-	return TRACK_ABSENT;
-}
-
 static enum track_state open_polhemus(struct track_device *device, char *why, size_t size)
 {
-	struct polhemus *p = (struct polhemus *)device;
-	const struct model *m = &models[p->params.model];
-	const bool any = !p->serial[0] && !p->path[0];
-	enum track_state state = TRACK_ABSENT, each;
-	char each_why[TRACK_WHY];
-	int found = 0;
-
-	if (track_usb_begin(&p->usb, VENDOR) < 0) {
-		snprintf(why, size, "libusb cannot look at USB on this machine");
-		track_usb_end(&p->usb);
-		return TRACK_FAILED;
-	}
-	for (int i = 0; i < p->usb.count && state != TRACK_RUNNING; i++) {
-		struct track_usb_node *node = &p->usb.nodes[i];
-
-		if (!among(m->products, node->product) ||
-		    (p->path[0] && strcmp(p->path, node->path) != 0) ||
-		    (any && found++ != p->params.number))
-			continue;
-		each = try_node(p, node, each_why, sizeof each_why);
-		/* One that cannot be asked may be the one. */
-		if (each == TRACK_ABSENT)
-			continue;
-		state = each;
-		snprintf(why, size, "%s", each_why);
-	}
-	if (state == TRACK_ABSENT)
-		state = none(p, m, why, size);
-	if (state != TRACK_RUNNING)
-		track_usb_end(&p->usb);
-	return state;
+	return polhemus_find((struct polhemus *)device, why, size);
 }
 
 static int read_polhemus(struct track_device *device, int timeout_ms, char *why, size_t size)
@@ -252,10 +132,15 @@ static int read_polhemus(struct track_device *device, int timeout_ms, char *why,
 	struct polhemus *p = (struct polhemus *)device;
 	const int r = track_usb_receive(&p->usb, track_device_wake_fd(device), timeout_ms, why, size);
 
-	if (r < 0 || r == GR_OK || track_device_now(device) - p->heard_ns < SILENCE_NS)
+	/* Bytes that are no frames are silence, too. */
+	if (r < 0 || track_device_now(device) - p->heard_ns < SILENCE_NS)
 		return r;
 	/* It may have been switched off and on, or told to stop by its own panel. */
-	return start(p, why, size) == TRACK_RUNNING ? GR_NOTHING : GR_ERR_IO;
+	switch (polhemus_start(p, why, size)) {
+	case TRACK_RUNNING: return GR_NOTHING;
+	case TRACK_ABSENT: return GR_ERR_IO;
+	default: return GR_ERR_STATE;
+	}
 }
 
 static void destroy_polhemus(struct track_device *device)
@@ -293,7 +178,7 @@ int track_polhemus_create(struct track_device **out, const struct track_polhemus
 			  const struct gr_clock *clock)
 {
 	static const int rates_hz[] = { 30, 60, 120, 240, 480, 960 };
-	const struct model *m = &models[params->model];
+	const struct polhemus_model *m = &polhemus_models[params->model];
 	bool known = m->talk != &polhemus_viper;
 	struct polhemus *p;
 	int r;

@@ -9,8 +9,7 @@
 #define QUIET_MS 100 /* longer than between two frames of the slowest rate */
 #define DRAIN_MS 500
 #define TRIES 3
-#define MAP_MS 1000
-#define POSE_MS 500
+#define ANSWER_MS 500
 
 static void take_pose(struct polhemus *p, const struct track_liberty_pose *pose)
 {
@@ -99,7 +98,7 @@ static bool look_at_stations(struct polhemus *p, char *why, size_t size)
 	p->answered = false;
 	if (!say(p, "\x15" "0\r", why, size))
 		return false;
-	if (polhemus_await(p, MAP_MS, why, size))
+	if (polhemus_await(p, ANSWER_MS, why, size))
 		return true;
 	if (!p->usb.failed)
 		snprintf(why, size, "does not say which stations it has (Ctrl-U); switch it off and "
@@ -116,7 +115,7 @@ static bool try_list(struct polhemus *p, const char *list, size_t body, char *wh
 	p->answered = false;
 	if (!say(p, "P", why, size))
 		return false;
-	(void)polhemus_await(p, POSE_MS, why, size);
+	(void)polhemus_await(p, ANSWER_MS, why, size);
 	/* Of other stations, too. */
 	(void)polhemus_drain(p, SETTLE_MS, DRAIN_MS);
 	return !p->usb.failed && p->body == body;

@@ -26,6 +26,17 @@ struct polhemus_talk {
 };
 extern const struct polhemus_talk polhemus_viper, polhemus_liberty;
 
+#define POLHEMUS_PRODUCTS 4
+
+struct polhemus_model {
+	const char *kind, *name;
+	const struct polhemus_talk *talk;
+	double rate_hz; /* usual */
+	/* bare: before its firmware is loaded; 0 ends both. */
+	uint16_t products[POLHEMUS_PRODUCTS], bare[POLHEMUS_PRODUCTS];
+};
+extern const struct polhemus_model polhemus_models[TRACK_POLHEMUS_MODELS];
+
 struct polhemus {
 	struct track_device device;
 	const struct polhemus_talk *talk;
@@ -39,7 +50,6 @@ struct polhemus {
 	bool running;	  /* what comes is published */
 	int64_t heard_ns; /* when a frame came last, or it was started */
 	/* What the dialogue waits for. */
-	uint64_t frames; /* that came, of any kind */
 	bool answered;
 	struct track_viper_reply reply;	     /* VIPER's last */
 	char said_serial[33];		     /* VIPER: what it says its serial number is */
@@ -57,5 +67,13 @@ bool polhemus_drain(struct polhemus *p, int quiet_ms, int most_ms);
 /* Publishes what a frame's number says: lost sensors, frames that are missing. */
 void polhemus_begin_frame(struct polhemus *p, uint32_t number);
 void polhemus_publish(struct polhemus *p, const struct track_polhemus_sensor *sensor);
+
+/* The driver's open: looks for the device, see struct track_device_ops. */
+enum track_state polhemus_find(struct polhemus *p, char *why, size_t size);
+/* Stops what it sends, sets it up and has it send; p->running is set when that was done. */
+enum track_state polhemus_start(struct polhemus *p, char *why, size_t size);
+void polhemus_be_silent(struct polhemus *p);
+/* Bytes that have arrived; ctx: the struct polhemus. */
+void polhemus_take(void *ctx, const uint8_t *bytes, size_t len);
 
 #endif

@@ -80,13 +80,13 @@ void track_usb_close(struct track_usb *usb);
 
 /*
  * Waits for bytes, at most timeout_ms or until wake_fd is readable, and hands
- * over all that have come. GR_OK; GR_NOTHING; GR_ERR_IO: it is gone or broken,
- * with the reason.
+ * over all that have come. GR_OK; GR_NOTHING; with the reason GR_ERR_IO: it is
+ * gone, GR_ERR_STATE: the connection broke.
  */
 int track_usb_receive(struct track_usb *usb, int wake_fd, int timeout_ms, char *why, size_t size);
 /*
  * Sends; a packet of no bytes follows where the last one is full, or the device
- * would wait for more. Takes at most a quarter of a second. GR_OK, GR_ERR_IO.
+ * would wait for more. Takes at most half a second. GR_OK, or as receive.
  */
 int track_usb_send(struct track_usb *usb, const uint8_t *bytes, size_t len, char *why, size_t size);
 

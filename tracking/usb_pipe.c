@@ -142,11 +142,12 @@ static void clear_halt(struct track_usb *usb)
 
 static int broken(int error, char *why, size_t size)
 {
-	if (error == LIBUSB_ERROR_NO_DEVICE)
+	if (error == LIBUSB_ERROR_NO_DEVICE) {
 		snprintf(why, size, "unplugged");
-	else
-		snprintf(why, size, "the USB connection broke: %s", libusb_strerror(error));
-	return GR_ERR_IO;
+		return GR_ERR_IO;
+	}
+	snprintf(why, size, "the USB connection broke: %s", libusb_strerror(error));
+	return GR_ERR_STATE;
 }
 
 int track_usb_receive(struct track_usb *usb, int wake_fd, int timeout_ms, char *why, size_t size)

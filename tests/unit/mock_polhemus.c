@@ -233,7 +233,8 @@ void mock_polhemus_plug(struct mock_polhemus *p, UMockdevTestbed *bed)
 		.idle = idle,
 		.ctx = p,
 	};
-	p->usb = mock_usb_plug(bed, &params);
+	p->usb = mock_usb_create(bed, &params);
+	mock_usb_plug(p->usb);
 }
 
 void mock_polhemus_unplug(struct mock_polhemus *p)

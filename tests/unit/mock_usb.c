@@ -198,6 +198,8 @@ static int simple(struct mock_usb *m, unsigned long request, UMockdevIoctlData *
 {
 	if (request == USBDEVFS_GETDRIVER || request == USBDEVFS_IOCTL)
 		return -ENODATA; /* no driver of the kernel's is bound */
+	if (request == USBDEVFS_RELEASEINTERFACE)
+		m->claimed = false;
 	if (m->gone)
 		return -ENODEV;
 	switch (request) {
@@ -214,12 +216,12 @@ static int simple(struct mock_usb *m, unsigned long request, UMockdevIoctlData *
 	case USBDEVFS_CLAIMINTERFACE:
 		m->claimed = !m->params.busy;
 		return m->params.busy ? -EBUSY : 0;
-	case USBDEVFS_RELEASEINTERFACE: m->claimed = false; return 0;
 	case USBDEVFS_SETCONFIGURATION: set_configuration(m); return 0;
 	case USBDEVFS_CLEAR_HALT:
 		m->halted = false;
 		pump(m);
 		return 0;
+	case USBDEVFS_RELEASEINTERFACE:
 	case USBDEVFS_SETINTERFACE:
 	case USBDEVFS_RESET: return 0;
 	case USBDEVFS_SUBMITURB: submit(m, arg); return 0;
@@ -374,7 +376,7 @@ static void describe(struct mock_usb *m)
 	m->descriptors_len = (size_t)(to - m->descriptors);
 }
 
-static void plug_in(struct mock_usb *m)
+static void add_to_sysfs(struct mock_usb *m)
 {
 	const struct mock_usb_params *p = &m->params;
 	g_autofree char *descriptors = mock_hex(m->descriptors, m->descriptors_len);
@@ -397,7 +399,7 @@ static void plug_in(struct mock_usb *m)
 	mock_add(m->bed, text);
 }
 
-struct mock_usb *mock_usb_plug(UMockdevTestbed *bed, const struct mock_usb_params *params)
+struct mock_usb *mock_usb_create(UMockdevTestbed *bed, const struct mock_usb_params *params)
 {
 	struct mock_usb *m = calloc(1, sizeof *m);
 	pthread_mutexattr_t recursive;
@@ -416,24 +418,36 @@ struct mock_usb *mock_usb_plug(UMockdevTestbed *bed, const struct mock_usb_param
 	snprintf(m->path, sizeof m->path, "/devices/mockusb/%d-%d", params->bus, params->number);
 	m->base = umockdev_ioctl_base_new();
 	g_signal_connect(m->base, "handle-ioctl", G_CALLBACK(on_ioctl), m);
-	if (!mock_node_open(&m->node, bed, m->devnode) ||
-	    !umockdev_testbed_attach_ioctl(bed, m->devnode, m->base, NULL))
+	describe(m);
+	return m;
+}
+
+void mock_usb_plug(struct mock_usb *m)
+{
+	/* Node, handlers, sysfs: in this order. */
+	if (!mock_node_open(&m->node, m->bed, m->devnode) ||
+	    !umockdev_testbed_attach_ioctl(m->bed, m->devnode, m->base, NULL))
 		abort();
 	set_ready(m);
-	describe(m);
-	plug_in(m);
-	return m;
+	add_to_sysfs(m);
+}
+
+void mock_usb_hang_up(struct mock_usb *m)
+{
+	pthread_mutex_lock(&m->lock);
+	if (!m->gone) {
+		m->gone = true;
+		while (m->flying)
+			finish(m, &m->flying, -ENODEV, NULL, 0);
+		set_ready(m);
+		mock_node_hang_up(&m->node);
+	}
+	pthread_mutex_unlock(&m->lock);
 }
 
 void mock_usb_unplug(struct mock_usb *m)
 {
-	pthread_mutex_lock(&m->lock);
-	m->gone = true;
-	while (m->flying)
-		finish(m, &m->flying, -ENODEV, NULL, 0);
-	set_ready(m);
-	mock_node_hang_up(&m->node);
-	pthread_mutex_unlock(&m->lock);
+	mock_usb_hang_up(m);
 	mock_remove(m->bed, m->path);
 	umockdev_testbed_detach_ioctl(m->bed, m->devnode, NULL);
 }

@@ -29,8 +29,9 @@ struct mock_usb_params {
 };
 
 struct mock_usb;
-/* Plugged in at once. */
-struct mock_usb *mock_usb_plug(UMockdevTestbed *bed, const struct mock_usb_params *params);
+struct mock_usb *mock_usb_create(UMockdevTestbed *bed, const struct mock_usb_params *params);
+/* Once. A client may have opened it before this returns. */
+void mock_usb_plug(struct mock_usb *usb);
 /* Bytes arrive from the device, in as many packets as they need. */
 void mock_usb_push(struct mock_usb *usb, const uint8_t *bytes, size_t len);
 /* The next read ends so: -EPIPE halts the endpoint until the client clears that. */
@@ -41,8 +42,16 @@ bool mock_usb_claimed(struct mock_usb *usb);
 /* Reads that are with the kernel. */
 unsigned mock_usb_reads(struct mock_usb *usb);
 int mock_usb_configuration(struct mock_usb *usb);
-/* What a client has open ends with ENODEV, what it has submitted likewise. */
+/*
+ * Unplugs it: what a client has open ends with ENODEV, what it has submitted
+ * likewise, and udev tells of it.
+ *
+ * umockdev aborts when a listener of udev's closes its socket just as it is
+ * told. Where another thread may do that, hang up first, wait until the device
+ * is claimed no more, and keep a libusb context, whose listener all share.
+ */
 void mock_usb_unplug(struct mock_usb *usb);
+void mock_usb_hang_up(struct mock_usb *usb);
 /* Of one that is unplugged and that no client has open any more. NULL: nothing. */
 void mock_usb_free(struct mock_usb **usb);
 
