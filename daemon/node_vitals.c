@@ -10,7 +10,8 @@
 static double mean_ms(const struct timers *timers, int stage)
 {
 	double ms[TIMER_WINDOW], sum = 0;
-	const size_t count = timers_window(timers, stage, ms), some = count < FRAMES ? count : FRAMES;
+	const size_t count = timers_window(timers, stage, ms),
+		     some = count < FRAMES ? count : FRAMES;
 
 	for (size_t i = count - some; i < count; i++)
 		sum += ms[i];
@@ -29,8 +30,10 @@ void node_vitals_tell(struct renderer *renderer, struct fdp_node *fdp)
 		timers_stats(timers, i, &stats);
 		if (!stats.name || !stats.name[0])
 			continue;
-		snprintf(stages[count].name, sizeof stages[count].name, "%.*s", FDP_VITALS_NAME - 1, stats.name);
-		stages[count++].us = (uint32_t)lrint(fmin(fmax(mean_ms(timers, i), 0) * 1e3, UINT32_MAX));
+		snprintf(stages[count].name, sizeof stages[count].name, "%.*s", FDP_VITALS_NAME - 1,
+			 stats.name);
+		stages[count++].us =
+			(uint32_t)lrint(fmin(fmax(mean_ms(timers, i), 0) * 1e3, UINT32_MAX));
 	}
 	fdp_node_stages(fdp, stages, count);
 }

@@ -60,13 +60,15 @@ static bool wanted(const struct fdp_want *want, uint64_t frame, unsigned piece)
 	return want->frame == frame && want->bits[piece / 64] >> piece % 64 & 1;
 }
 
-bool fdp_master_waits(const struct fdp_master *m, unsigned node, unsigned index, uint64_t frame, unsigned piece)
+bool fdp_master_waits(const struct fdp_master *m, unsigned node, unsigned index, uint64_t frame,
+		      unsigned piece)
 {
 	return wanted(want_at(m, node, index), frame, piece) ||
 	       wanted(want_at(m, m->params.node_count, index), frame, piece);
 }
 
-void fdp_master_want_piece(struct fdp_master *m, int to, unsigned index, uint64_t frame, unsigned piece)
+void fdp_master_want_piece(struct fdp_master *m, int to, unsigned index, uint64_t frame,
+			   unsigned piece)
 {
 	struct fdp_want *want = want_at(m, to < 0 ? m->params.node_count : (size_t)to, index);
 
@@ -98,7 +100,8 @@ static unsigned take_first(struct fdp_master *m, struct fdp_want *want)
 static size_t send_one(struct fdp_master *m, size_t to, unsigned index)
 {
 	const bool group = to == m->params.node_count;
-	const struct fdp_slice *slice = fdp_share_find(&m->share, index, want_at(m, to, index)->frame);
+	const struct fdp_slice *slice =
+		fdp_share_find(&m->share, index, want_at(m, to, index)->frame);
 	struct fdp_want *want = want_at(m, to, index);
 	size_t len = (size_t)FDP_PIECE_HEAD + (slice ? slice->chunk : 0);
 
@@ -108,8 +111,8 @@ static size_t send_one(struct fdp_master *m, size_t to, unsigned index)
 	}
 	if (group ? !fdp_master_bulk_to_all(m, len) : !fdp_master_bulk(m, (unsigned)to, len))
 		return 0;
-	len = fdp_share_write(&m->share, index, slice, take_first(m, want), fdp_outbox_body(&m->out),
-			      m->out.datagram_max - FDP_HEADER_BYTES);
+	len = fdp_share_write(&m->share, index, slice, take_first(m, want),
+			      fdp_outbox_body(&m->out), m->out.datagram_max - FDP_HEADER_BYTES);
 	if (!len)
 		return 0;
 	fdp_outbox_send(&m->out, group ? FDP_TO_GROUP : (int)to, FDP_SLICE, len);
@@ -118,7 +121,8 @@ static size_t send_one(struct fdp_master *m, size_t to, unsigned index)
 
 static bool rests(const struct fdp_master *m, int64_t now_ns)
 {
-	return !m->underway && now_ns >= m->due_ns - FDP_BULK_REST_NS && now_ns < m->due_ns + FDP_BULK_REST_NS;
+	return !m->underway && now_ns >= m->due_ns - FDP_BULK_REST_NS &&
+	       now_ns < m->due_ns + FDP_BULK_REST_NS;
 }
 
 void fdp_master_bulk_tick(struct fdp_master *m, int64_t now_ns)
@@ -134,8 +138,9 @@ void fdp_master_bulk_tick(struct fdp_master *m, int64_t now_ns)
 	}
 	while (m->wanted && idle < places && sent < m->bulk_tick_bytes) {
 		const size_t place = m->want_next++ % places, nodes = m->params.node_count;
-		const size_t len = m->wants[place].left ?
-			send_one(m, place / nodes, (unsigned)(place % nodes)) : 0;
+		const size_t len = m->wants[place].left
+					   ? send_one(m, place / nodes, (unsigned)(place % nodes))
+					   : 0;
 
 		idle = len ? 0 : idle + 1;
 		sent += len;

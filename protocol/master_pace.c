@@ -30,9 +30,9 @@ void fdp_master_start_barrier(struct fdp_master *m, uint64_t live, int64_t now_n
 	if (half->shows) {
 		half->nodes &= live;
 	} else {
-		*half = (struct fdp_half){
-			.nodes = live & nodes_at_half(m), .frame = m->frame, .begun_ns = now_ns
-		};
+		*half = (struct fdp_half){ .nodes = live & nodes_at_half(m),
+					   .frame = m->frame,
+					   .begun_ns = now_ns };
 	}
 	fdp_barrier_start(&m->barrier, m->frame, half->shows ? live : live & ~half->nodes, now_ns,
 			  m->params.deadline_ns);
@@ -109,7 +109,9 @@ bool fdp_master_frame_over(struct fdp_master *m, int64_t now_ns)
 static void say_pace(struct fdp_master *m, unsigned node)
 {
 	const struct fdp_master_event event = {
-		.kind = FDP_MASTER_PACE, .node = (int)node, .frame = m->frame,
+		.kind = FDP_MASTER_PACE,
+		.node = (int)node,
+		.frame = m->frame,
 		.pace = m->peers[node].pace.state,
 	};
 
@@ -119,7 +121,9 @@ static void say_pace(struct fdp_master *m, unsigned node)
 static void evict(struct fdp_master *m, unsigned node)
 {
 	const struct fdp_master_event event = {
-		.kind = FDP_MASTER_EVICTED, .node = (int)node, .frame = m->frame,
+		.kind = FDP_MASTER_EVICTED,
+		.node = (int)node,
+		.frame = m->frame,
 		.pace = m->peers[node].pace.state,
 	};
 
@@ -131,9 +135,9 @@ static void evict(struct fdp_master *m, unsigned node)
 static void note_missed(struct fdp_master *m, unsigned node, int64_t now_ns)
 {
 	struct fdp_peer *peer = &m->peers[node];
-	const struct fdp_master_event late = {
-		.kind = FDP_MASTER_LATE, .node = (int)node, .frame = m->frame
-	};
+	const struct fdp_master_event late = { .kind = FDP_MASTER_LATE,
+					       .node = (int)node,
+					       .frame = m->frame };
 
 	peer->status.missed++;
 	if (!peer->missed_row++)

@@ -26,7 +26,8 @@ static uint64_t cost_of(const struct fdp_master *m, size_t bytes)
 
 bool fdp_master_has_room(const struct fdp_master *m, unsigned node, size_t bytes, bool hurries)
 {
-	return fdp_window_fits(&m->peers[node].window_out, m->sent_to_all, cost_of(m, bytes), hurries);
+	return fdp_window_fits(&m->peers[node].window_out, m->sent_to_all, cost_of(m, bytes),
+			       hurries);
 }
 
 uint64_t fdp_master_with_room(const struct fdp_master *m, uint64_t nodes, size_t bytes)
@@ -48,7 +49,8 @@ void fdp_master_mark_frame(struct fdp_master *m, uint64_t nodes)
 
 void fdp_master_mark_time(struct fdp_master *m, int to, int64_t sent_ns)
 {
-	const size_t first = to < 0 ? 0 : (size_t)to, end = to < 0 ? m->params.node_count : first + 1;
+	const size_t first = to < 0 ? 0 : (size_t)to,
+		     end = to < 0 ? m->params.node_count : first + 1;
 
 	for (size_t i = first; i < end; i++)
 		fdp_window_mark_time(&m->peers[i].window_out, m->sent_to_all, (uint32_t)sent_ns);

@@ -1,8 +1,10 @@
 #include "protocol/pace.h"
 
 static const char *const names[] = {
-	[FDP_PACE_IN_STEP] = "in step", [FDP_PACE_SLOW] = "slow",
-	[FDP_PACE_HALF] = "half rate", [FDP_PACE_EVICTED] = "evicted for slowness",
+	[FDP_PACE_IN_STEP] = "in step",
+	[FDP_PACE_SLOW] = "slow",
+	[FDP_PACE_HALF] = "half rate",
+	[FDP_PACE_EVICTED] = "evicted for slowness",
 };
 
 const char *fdp_pace_state_name(enum fdp_pace_state state)
@@ -43,8 +45,10 @@ static void fall_back(struct fdp_pace *pace, const struct fdp_pace_params *p, in
 
 	pace->relapses = again ? pace->relapses + 1 : 0;
 	enter(pace,
-	      p->policy == FDP_SLOW_WAIT ? FDP_PACE_SLOW :
-	      p->policy == FDP_SLOW_HALF ? FDP_PACE_HALF : FDP_PACE_EVICTED, now_ns);
+	      p->policy == FDP_SLOW_WAIT   ? FDP_PACE_SLOW
+	      : p->policy == FDP_SLOW_HALF ? FDP_PACE_HALF
+					   : FDP_PACE_EVICTED,
+	      now_ns);
 	pace->score = p->frames * factor(pace);
 	if (pace->state != FDP_PACE_EVICTED)
 		return;

@@ -17,7 +17,7 @@ struct fdp_vitals {
 	unsigned count;
 	struct fdp_vitals_stage {
 		char name[FDP_VITALS_NAME]; /* printable ASCII */
-		uint32_t us;                /* of late, a frame */
+		uint32_t us;		    /* of late, a frame */
 	} stages[FDP_VITALS_STAGES];
 };
 
