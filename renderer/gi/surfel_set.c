@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <sodium.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -196,11 +197,23 @@ static float sight_along(const struct surfel *surfel, float radius_m, const floa
 	return length / (1.41421356f * radius_m) * ((1 - f) * by_a + f * by_b);
 }
 
+/* Most surfels of a flat wall: their sight is 0 in every direction. */
+static bool sees_all(const struct surfel *surfel)
+{
+	static const uint8_t no_end[SURFEL_SECTORS] = {
+		255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255,
+	};
+
+	return memcmp(surfel->reach, no_end, sizeof no_end) == 0;
+}
+
 float surfel_sight(const struct surfel_set *set, size_t i, const float position[3])
 {
 	const struct surfel *surfel = &set->surfels[i];
 	float normal[3], d[3];
 
+	if (sees_all(surfel))
+		return 0;
 	surfel_normal_unpack(surfel->normal, normal);
 	for (int k = 0; k < 3; k++)
 		d[k] = position[k] - surfel->position[k];
@@ -223,15 +236,17 @@ float surfel_weight(const struct surfel_set *set, size_t i, const float position
 	const struct surfel *surfel = &set->surfels[i];
 	float own[3], d[3];
 
-	surfel_normal_unpack(surfel->normal, own);
 	for (int k = 0; k < 3; k++)
 		d[k] = position[k] - surfel->position[k];
 	float near = 1 - dot3(d, d) / (set->radius_m * set->radius_m);
+	if (near <= 0)
+		return 0; /* most of a cell's: before anything is computed */
+	surfel_normal_unpack(surfel->normal, own);
 	float facing = 2 * dot3(own, normal) - 1;
 	float off = 0.5f * (dot3(d, own) + dot3(d, normal)) / (SURFEL_PLANE * set->spacing_m);
 	float level = 1 - off * off;
-	if (near <= 0 || facing <= 0 || level <= 0)
+	if (facing <= 0 || level <= 0)
 		return 0;
 	return near * near * facing * facing * level * level *
-	       fade(sight_along(surfel, set->radius_m, own, d));
+	       (sees_all(surfel) ? 1 : fade(sight_along(surfel, set->radius_m, own, d)));
 }
