@@ -271,7 +271,7 @@ static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	bool fresh;
 	int node, r;
 
-	if (fdp_standby_is_its(bytes, len)) {
+	if (fdp_standby_is_its(m->standby, bytes, len)) {
 		r = master_role_receive(m, bytes, len, arrived_ns, now_ns);
 		if (r < 0)
 			note_dropped(m, r, bytes, len, from, now_ns);

@@ -129,28 +129,29 @@ static void write_parity(struct json *json, const struct master *m, const struct
 
 static void write_wire(struct json *json, const struct master *m)
 {
-	struct fdp_counters c;
+	struct fdp_counters c, ear;
 	struct net_stats net;
 
 	fdp_master_counters(m->fdp, &c);
+	fdp_standby_counters(m->standby, &ear);
 	net_stats(m->net, &net);
 	json_open(json, "wire", '{');
 	json_u64(json, "bytes_out", c.bytes_out);
-	json_u64(json, "bytes_in", c.bytes_in);
+	json_u64(json, "bytes_in", c.bytes_in + ear.bytes_in);
 	json_u64(json, "datagrams_out", c.datagrams_out);
-	json_u64(json, "datagrams_in", c.datagrams_in);
+	json_u64(json, "datagrams_in", c.datagrams_in + ear.datagrams_in);
 	json_u64(json, "repairs", c.repairs);
 	json_u64(json, "packed", c.packed);
 	write_parity(json, m, &c);
 	json_u64(json, "send_failed", net.send_failed);
 	write_way(json, m);
 	json_open(json, "bad", '{');
-	json_u64(json, "short", c.bad_short);
-	json_u64(json, "version", c.bad_version);
-	json_u64(json, "auth", c.bad_auth);
+	json_u64(json, "short", c.bad_short + ear.bad_short);
+	json_u64(json, "version", c.bad_version + ear.bad_version);
+	json_u64(json, "auth", c.bad_auth + ear.bad_auth);
 	json_u64(json, "session", c.bad_session);
-	json_u64(json, "format", c.bad_format);
-	json_u64(json, "replay", c.bad_replay);
+	json_u64(json, "format", c.bad_format + ear.bad_format);
+	json_u64(json, "replay", c.bad_replay + ear.bad_replay);
 	json_u64(json, "oversized", net.oversized);
 	json_close(json, '}');
 	json_close(json, '}');

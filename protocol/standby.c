@@ -129,9 +129,9 @@ void fdp_standby_destroy(struct fdp_standby **standby)
 	free(s);
 }
 
-bool fdp_standby_is_its(const uint8_t *bytes, size_t len)
+bool fdp_standby_is_its(const struct fdp_standby *s, const uint8_t *bytes, size_t len)
 {
-	return len >= FDP_HEADER_BYTES &&
+	return s->ear && len >= FDP_HEADER_BYTES &&
 	       fdp_sender_is_master((uint16_t)(bytes[SENDER_AT] | bytes[SENDER_AT + 1] << 8));
 }
 
@@ -148,6 +148,14 @@ static void keep_state(struct fdp_standby *s, int64_t arrived_ns)
 	s->hash = fdp_node_hash(s->ear);
 	s->live = live;
 	s->frame_ns = arrived_ns;
+}
+
+void fdp_standby_counters(const struct fdp_standby *s, struct fdp_counters *out)
+{
+	*out = (struct fdp_counters){ 0 };
+	if (s->ear)
+		fdp_node_counters(s->ear, out);
+	out->bad_session = 0;
 }
 
 int fdp_standby_receive(struct fdp_standby *s, const uint8_t *bytes, size_t len, int64_t arrived_ns,

@@ -61,8 +61,13 @@ int fdp_standby_create(struct fdp_standby **out, const struct fdp_standby_params
 		       const struct fdp_standby_ops *ops, struct fdp_master *master, int64_t now_ns);
 void fdp_standby_destroy(struct fdp_standby **standby);
 
-/* Whether a datagram says that it is from a master: then it is fdp_standby_receive's. */
-bool fdp_standby_is_its(const uint8_t *bytes, size_t len);
+/*
+ * Whether a datagram says that it is from a master, of whom there are several:
+ * then it is fdp_standby_receive's.
+ */
+bool fdp_standby_is_its(const struct fdp_standby *standby, const uint8_t *bytes, size_t len);
+/* Of the ear; words of a master that it does not follow are nothing bad. All 0 with one master. */
+void fdp_standby_counters(const struct fdp_standby *standby, struct fdp_counters *out);
 /* As fdp_node_receive. arrived_ns: the kernel's time, or now_ns. */
 int fdp_standby_receive(struct fdp_standby *standby, const uint8_t *bytes, size_t len,
 			int64_t arrived_ns, int64_t now_ns);

@@ -298,7 +298,7 @@ static void deliver(struct room *r, const struct room_packet *p)
 	}
 	if (!m->fdp)
 		return;
-	if (fdp_standby_is_its(p->bytes, p->len))
+	if (fdp_standby_is_its(m->standby, p->bytes, p->len))
 		fdp_standby_receive(m->standby, p->bytes, p->len, p->at_ns, r->now_ns);
 	else if (fdp_standby_role(m->standby) != FDP_ROLE_FOLLOWS)
 		fdp_master_receive(m->fdp, p->bytes, p->len, r->now_ns, NULL);
