@@ -252,6 +252,8 @@ uint64_t fdp_session_after(uint64_t highest);
  * whether there are nodes without a master.
  */
 void fdp_master_call(struct fdp_master *master);
+/* Until then nobody comes in who has been in a session before; fdp_master_renew ends it. */
+void fdp_master_listen(struct fdp_master *master, int64_t until_ns);
 bool fdp_master_calls(const struct fdp_master *master);
 /*
  * The highest frame that a node which came in has shown, whoever was its master: one

@@ -102,6 +102,11 @@ uint64_t fdp_master_floor(const struct fdp_master *m)
 	return m->floor;
 }
 
+void fdp_master_listen(struct fdp_master *m, int64_t until_ns)
+{
+	m->listens_ns = until_ns;
+}
+
 bool fdp_master_calls(const struct fdp_master *m)
 {
 	return m->calls;
@@ -119,6 +124,7 @@ static void forget_room(struct fdp_master *m)
 	m->hash = m->previous_hash = 0;
 	memset(m->hash_frames, 0xff, sizeof m->hash_frames);
 	m->underway = m->calls = false;
+	m->listens_ns = 0;
 	m->swap_ns = 0;
 	m->barrier = (struct fdp_barrier){ 0 };
 	m->half = (struct fdp_half){ 0 };

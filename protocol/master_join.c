@@ -145,6 +145,9 @@ bool fdp_master_on_join(struct fdp_master *m, const struct fdp_header *header,
 	char reason[FDP_REASON_MAX];
 	uint64_t plan;
 
+	/* Who has been in a room may find that it goes on: one that begins does not take it away. */
+	if (join->highest && join->highest != m->params.session && now_ns < m->listens_ns)
+		return false;
 	/* Whoever only calls has nothing to follow yet. */
 	if (fdp_master_is_follower(m, node) && m->calls)
 		return false;

@@ -163,6 +163,7 @@ struct fdp_master {
 	int64_t spoke_ns;    /* to all who are live or follow */
 	uint64_t floor;      /* see fdp_master_floor */
 	bool calls;          /* see fdp_master_call */
+	int64_t listens_ns;  /* see fdp_master_listen; 0: does not */
 	int64_t all_told_ns; /* SWAP last went to all nodes that the layout has */
 	unsigned probes; /* in this frame */
 

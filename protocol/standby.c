@@ -30,6 +30,7 @@ struct fdp_standby {
 	int64_t alive_ns; /* when there last was reason to believe that somebody rules */
 	bool found;	  /* somebody did */
 	int64_t began_ns, called_ns, took_ns; /* 0: it did not call */
+	int64_t listens_ns; /* begins to rule and knows of no room: until then; 0: not */
 };
 
 static const char *const role_names[] = {
@@ -83,6 +84,29 @@ static int create_ear(struct fdp_standby *s)
 	return r;
 }
 
+/*
+ * One that begins to rule and knows nothing is in the first epoch, and so may be
+ * a room that goes on: by their sessions alone chance would choose between them.
+ * For some time it takes in nobody who has been in a room, and its ear enters any
+ * session of its epoch.
+ */
+static void listen(struct fdp_standby *s, int64_t now_ns)
+{
+	const uint64_t session = fdp_master_session(s->master), epoch = session >> FDP_EPOCH_SHIFT;
+
+	if (epoch == 1)
+		s->listens_ns = now_ns + START_PATIENCE_NS;
+	fdp_master_listen(s->master, s->listens_ns);
+	fdp_node_guard(s->ear, s->listens_ns ? epoch << FDP_EPOCH_SHIFT : session);
+}
+
+static void end_listening(struct fdp_standby *s)
+{
+	s->listens_ns = 0;
+	if (s->role == FDP_ROLE_RULES)
+		fdp_node_guard(s->ear, fdp_master_session(s->master));
+}
+
 int fdp_standby_create(struct fdp_standby **out, const struct fdp_standby_params *params,
 		       const struct fdp_standby_ops *ops, struct fdp_master *master, int64_t now_ns)
 {
@@ -112,7 +136,7 @@ int fdp_standby_create(struct fdp_standby **out, const struct fdp_standby_params
 		return r;
 	}
 	if (s->ear && s->role == FDP_ROLE_RULES)
-		fdp_node_guard(s->ear, fdp_master_session(master));
+		listen(s, now_ns);
 	*out = s;
 	return GR_OK;
 }
@@ -307,6 +331,8 @@ enum fdp_standby_change fdp_standby_tick(struct fdp_standby *s, int64_t now_ns)
 		fdp_node_tick(s->ear, now_ns);
 	if (s->joined)
 		return join(s, now_ns);
+	if (s->listens_ns && now_ns >= s->listens_ns)
+		end_listening(s);
 	if (s->outranked > fdp_master_session(s->master) && s->role != FDP_ROLE_FOLLOWS)
 		return rise(s, now_ns);
 	s->outranked = 0;
@@ -332,6 +358,8 @@ int64_t fdp_standby_next(const struct fdp_standby *s)
 	} else {
 		at = call_at(s);
 	}
+	if (s->listens_ns && s->listens_ns < at)
+		at = s->listens_ns;
 	return at < next ? at : next;
 }
 

@@ -9,7 +9,9 @@
  *   - a standby that is cut off calls in vain: it takes nothing over;
  *   - a node enters no session below one that it has been in, so a master that
  *     comes back drives nobody that another has;
- *   - of two that rule after a partition, the one with the higher session stays.
+ *   - of two that rule after a partition, the one with the higher session stays;
+ *   - one that begins and knows of no room listens for a second: it takes nothing
+ *     from a room that goes on, even where chance gave it the higher session.
  *
  *   follows ──silence, or LEAVE──► calls ──a node comes in──► rules
  *      ▲                             │ the old one speaks       │ a higher session
