@@ -125,6 +125,8 @@ static bool members_fit(const struct surfel_grid *grid, size_t surfels)
 
 static const char *check_surfels(const struct surfel_set *set)
 {
+	if (set->count == 0)
+		return NULL; /* and no arrays */
 	for (size_t i = 0; i < set->count; i++) {
 		if (!all_finite(set->surfels[i].position, 3))
 			return "a surfel is nowhere";
