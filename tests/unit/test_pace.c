@@ -291,7 +291,8 @@ static void half_rate_in_loss(void **state)
 			shown[i] = s.nodes[i].swaps;
 		sim_run_frames(&s, 400);
 		for (int i = 0; i < 4; i++)
-			assert_in_range(s.nodes[i].swaps - shown[i], i % 2 ? 392 : 192, i % 2 ? 400 : 200);
+			/* one more: that of the frame before may come after the count */
+			assert_in_range(s.nodes[i].swaps - shown[i], i % 2 ? 392 : 192, i % 2 ? 401 : 201);
 		assert_int_equal(s.evicted + s.left, 0);
 		s.loss = s.duplicate = 0;
 		sim_run_frames(&s, 4);
