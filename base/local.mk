@@ -3,7 +3,6 @@ base_libgbase_a_SOURCES = \
 	base/clock.c base/clock.h \
 	base/cursor.h \
 	base/diag.c base/diag.h \
-	base/hash64.c base/hash64.h \
 	base/item.h \
 	base/line_fit.c base/line_fit.h \
 	base/log.c base/log.h \

@@ -41,4 +41,4 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/vitals.c protocol/vitals.h \
 	protocol/window.h \
 	protocol/wire.c protocol/wire.h
-protocol_libgprotocol_a_CFLAGS = $(AM_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS) $(ISAL_CFLAGS)
+protocol_libgprotocol_a_CFLAGS = $(AM_CFLAGS) $(SODIUM_CFLAGS) $(LZO_CFLAGS) $(ISAL_CFLAGS) $(XXHASH_CFLAGS)

@@ -1,13 +1,13 @@
 #include "protocol/state.h"
 
 #include "base/cursor.h"
-#include "base/hash64.h"
 #include "base/result.h"
 
 #include <math.h>
 #include <sodium.h>
 #include <stdlib.h>
 #include <string.h>
+#include <xxhash.h>
 
 #define HASH_BYTES 16 /* of the table: libsodium's smallest; the first 8 are kept */
 /* Values are encoded as they lie in memory: long parameters are then copied at its speed. */
@@ -243,7 +243,7 @@ uint64_t param_state_hash(const struct param_state *state, uint64_t previous)
 		if (room)
 			param_encode_values(id, param_get(state, id), room);
 	}
-	return gr_hash64(bytes, w.len);
+	return XXH64(bytes, w.len, 0);
 }
 
 uint64_t param_table_hash(void)

@@ -21,7 +21,7 @@ renderer_libgrenderer_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(EPOXY_CFLAGS) $(G
 # What a program that links each layer needs, lowest last.
 BASE_LIBS = base/libgbase.a $(SODIUM_LIBS)
 CONFIG_LIBS = config/libgconfig.a $(BASE_LIBS) $(LIBCONFIG_LIBS)
-PROTOCOL_LIBS = protocol/libgprotocol.a $(BASE_LIBS) $(LZO_LIBS) $(ISAL_LIBS)
+PROTOCOL_LIBS = protocol/libgprotocol.a $(BASE_LIBS) $(LZO_LIBS) $(ISAL_LIBS) $(XXHASH_LIBS)
 TRACKING_LIBS = tracking/libgtracking.a $(BASE_LIBS) $(HIDAPI_LIBS) $(LIBUSB_LIBS) $(UDEV_LIBS) -lpthread
 RENDERER_LIBS = renderer/libgrenderer.a $(CONFIG_LIBS) $(EPOXY_LIBS) $(GLFW_LIBS) \
 	$(ASSIMP_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(JPEG_LIBS) $(JSONC_LIBS) $(EMBREE_LIBS)

@@ -12,8 +12,8 @@ SHARE_ROOM_SOURCES = tests/unit/share_room.c tests/unit/share_room.h $(CLUSTER_S
 CLUSTER_BALLAST_SOURCES = $(CLUSTER_SIM_SOURCES) \
 	tools/bench/ballast/protocol/params.def $(protocol_libgprotocol_a_SOURCES)
 CLUSTER_BALLAST_CPPFLAGS = -iquote $(top_srcdir)/tools/bench/ballast $(AM_CPPFLAGS)
-CLUSTER_BALLAST_CFLAGS = $(PROTOCOL_TEST_CFLAGS) $(ISAL_CFLAGS)
-CLUSTER_BALLAST_LDADD = $(BASE_LIBS) $(LZO_LIBS) $(ISAL_LIBS) $(CMOCKA_LIBS)
+CLUSTER_BALLAST_CFLAGS = $(PROTOCOL_TEST_CFLAGS) $(ISAL_CFLAGS) $(XXHASH_CFLAGS)
+CLUSTER_BALLAST_LDADD = $(BASE_LIBS) $(LZO_LIBS) $(ISAL_LIBS) $(XXHASH_LIBS) $(CMOCKA_LIBS)
 
 PROTOCOL_TESTS = \
 	tests/unit/test_clock_offset \

@@ -2,7 +2,6 @@
 
 #include "base/cursor.h"
 #include "base/diag.h"
-#include "base/hash64.h"
 #include "base/log.h"
 #include "base/plain.h"
 #include "base/pose.h"
@@ -194,19 +193,6 @@ static void plain(const char *expected, double value, int digits)
 	assert_string_equal(said.text, expected);
 }
 
-/* As xxhsum -H64 (xxHash 0.8.1) says. */
-static void test_hash64(void **state)
-{
-	uint8_t bytes[101];
-
-	(void)state;
-	for (unsigned i = 0; i < sizeof bytes; i++)
-		bytes[i] = (uint8_t)(i * 7);
-	assert_true(gr_hash64("", 0) == UINT64_C(0xef46db3751d8e999));
-	assert_true(gr_hash64("abc", 3) == UINT64_C(0x44bc2cf5ad770999));
-	assert_true(gr_hash64(bytes, sizeof bytes) == UINT64_C(0x42312f4d55d9bd17));
-}
-
 static void test_plain_numbers(void **state)
 {
 	(void)state;
@@ -242,7 +228,6 @@ int main(void)
 		cmocka_unit_test(test_log_limit),
 		cmocka_unit_test(test_diag),
 		cmocka_unit_test(test_result_names),
-		cmocka_unit_test(test_hash64),
 	};
 	return cmocka_run_group_tests_name("base", tests, NULL, NULL);
 }
