@@ -41,26 +41,19 @@ static struct track_filter_params params_of(const struct layout_tracker *tracker
 	return p;
 }
 
-static bool gives_position(const struct layout_tracker *tracker, enum track_body body)
+/* Whether its samples place the body, or (a gamepad's) only turn it. */
+static bool gives(const struct layout_tracker *tracker, enum track_body body, bool only_turns)
 {
 	const enum layout_body wanted = body == TRACK_HEAD ? LAYOUT_HEAD : LAYOUT_WAND;
 
 	if (!layout_tracker_is_device(tracker))
 		return body == TRACK_HEAD ? tracker->head : tracker->wand;
-	for (size_t i = 0; i < tracker->binding_count; i++)
-		if (tracker->bindings[i].body == wanted && tracker->bindings[i].position)
-			return true;
-	return false;
-}
+	for (size_t i = 0; i < tracker->binding_count; i++) {
+		const struct layout_binding *binding = &tracker->bindings[i];
 
-/* A wand without position (a gamepad) is filtered as the tracker of its orientation says. */
-static bool gives_orientation(const struct layout_tracker *tracker, enum track_body body)
-{
-	const enum layout_body wanted = body == TRACK_HEAD ? LAYOUT_HEAD : LAYOUT_WAND;
-
-	for (size_t i = 0; i < tracker->binding_count; i++)
-		if (tracker->bindings[i].body == wanted && tracker->bindings[i].orientation)
+		if (binding->body == wanted && (only_turns ? binding->orientation : binding->position))
 			return true;
+	}
 	return false;
 }
 
@@ -68,12 +61,10 @@ struct track_filter_params tracker_filter_of(const struct layout *layout, enum t
 {
 	struct track_filter_params none = track_filter_defaults(TRACK_FILTER_NONE);
 
-	for (size_t i = 0; i < layout->tracker_count; i++)
-		if (gives_position(&layout->trackers[i], body))
-			return params_of(&layout->trackers[i]);
-	for (size_t i = 0; i < layout->tracker_count; i++)
-		if (gives_orientation(&layout->trackers[i], body))
-			return params_of(&layout->trackers[i]);
+	for (int only_turns = 0; only_turns < 2; only_turns++)
+		for (size_t i = 0; i < layout->tracker_count; i++)
+			if (gives(&layout->trackers[i], body, only_turns))
+				return params_of(&layout->trackers[i]);
 	none.position.gate = none.orientation.gate = 0;
 	return none;
 }

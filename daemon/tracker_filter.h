@@ -6,7 +6,7 @@
 #include "tracking/filter.h"
 #include "tracking/source.h"
 
-/* Of the tracker that gives the body's position; nobody does: no filter and no gate. */
+/* Of the tracker that gives the body's position, else of that of its orientation; of none: no filter and no gate. */
 struct track_filter_params tracker_filter_of(const struct layout *layout, enum track_body body);
 
 #endif

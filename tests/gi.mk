@@ -39,9 +39,13 @@ tests_unit_test_surfel_store_SOURCES = tests/unit/test_surfel_store.c $(BAKED_RO
 tests_unit_test_surfel_store_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
 tests_unit_test_surfel_store_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS)
 
-check_PROGRAMS += tests/unit/test_plan
-TESTS += tests/unit/test_plan
-tests_unit_test_plan_SOURCES = tests/unit/test_plan.c tests/unit/unit.h
+check_PROGRAMS += tests/unit/test_plan tests/unit/test_plan_code
+TESTS += tests/unit/test_plan tests/unit/test_plan_code
+PLAN_TEST_SOURCES = tests/unit/plan_cases.h tests/unit/unit.h
+tests_unit_test_plan_SOURCES = tests/unit/test_plan.c $(PLAN_TEST_SOURCES)
+tests_unit_test_plan_code_SOURCES = tests/unit/test_plan_code.c $(PLAN_TEST_SOURCES)
+tests_unit_test_plan_code_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_plan_code_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm
 tests_unit_test_plan_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_plan_LDADD = $(RENDERER_LIBS) $(CMOCKA_LIBS) -lm
 

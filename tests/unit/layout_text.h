@@ -48,4 +48,50 @@ static inline int layout_text_parse(const char *text, struct layout **out, struc
 	return result;
 }
 
+/* The room with other trackers: the text of the group, "trackers = ( ... );". The caller's to free. */
+static inline char *layout_text_with_trackers(const char *room, const char *trackers)
+{
+	const size_t len = (size_t)(strstr(room, "trackers = ") - room);
+	char *whole = malloc(len + strlen(trackers) + 1);
+
+	if (!whole)
+		abort();
+	memcpy(whole, room, len);
+	strcpy(whole + len, trackers);
+	return whole;
+}
+
+/* In good trackers, `find` is replaced; what is said about it, of the line on which `mark` stands. */
+struct layout_fault {
+	const char *find, *replace, *mark, *key, *message;
+	unsigned errors; /* in all; 0: it is a warning, as is what is not used */
+};
+
+/* 1 when the fault is not named as it should be. */
+static inline unsigned layout_text_check_fault(const struct layout_fault *fault, const char *room,
+					       const char *trackers)
+{
+	char *text = unit_replace(trackers, fault->find, fault->replace);
+	char *whole = layout_text_with_trackers(room, text);
+	const enum gr_severity severity =
+		!fault->errors || strstr(fault->message, "not used") ? GR_DIAG_WARNING : GR_DIAG_ERROR;
+	struct gr_diag diag = { 0 };
+	struct layout *layout = NULL;
+	char start[256];
+	unsigned bad = 0;
+
+	layout_text_parse(whole, &layout, &diag);
+	snprintf(start, sizeof start, "t.cave:%d: %s: ", unit_line(whole, fault->mark), fault->key);
+	if (!unit_diag_has(&diag, severity, start, fault->message) || diag.errors != fault->errors) {
+		printf("# wanted %s...%s... and %u errors\n", start, fault->message, fault->errors);
+		unit_diag_print(&diag);
+		bad = 1;
+	}
+	layout_destroy(&layout);
+	gr_diag_finish(&diag);
+	free(whole);
+	free(text);
+	return bad;
+}
+
 #endif

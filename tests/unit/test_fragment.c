@@ -44,18 +44,6 @@ static enum fdp_fragment_result add(struct fdp_reassembly *r, const struct cut *
 	return result;
 }
 
-static void shuffle(struct unit_random *r, unsigned *order, unsigned n)
-{
-	for (unsigned i = 0; i < n; i++)
-		order[i] = i;
-	for (unsigned i = n; i > 1; i--) {
-		const unsigned k = unit_random_u32(r) % i, t = order[i - 1];
-
-		order[i - 1] = order[k];
-		order[k] = t;
-	}
-}
-
 static void any_order(void **state)
 {
 	struct unit_random r = unit_random_start("any_order");
@@ -75,7 +63,7 @@ static void any_order(void **state)
 
 		assert_true(c.count && c.count <= FDP_FRAGMENTS_MAX);
 		message++;
-		shuffle(&r, order, c.count);
+		unit_shuffle(&r, order, c.count);
 		for (unsigned i = 0; i < c.count; i++) {
 			uint8_t bitmap[FDP_BITMAP_BYTES];
 

@@ -16,25 +16,19 @@ static const char trackers[] =
 	");\n";
 
 /* Their port 5000 is the usual one of DTrack. */
-static char *with_trackers(const char *text)
+static char *room_text(void)
 {
-	char *room = unit_replace(layout_text, "master_port = 5000", "master_port = 27100");
-	const size_t len = (size_t)(strstr(room, "trackers = ") - room);
-	char *whole = malloc(len + strlen(text) + 1);
-
-	memcpy(whole, room, len);
-	strcpy(whole + len, text);
-	free(room);
-	return whole;
+	return unit_replace(layout_text, "master_port = 5000", "master_port = 27100");
 }
 
 static struct layout *parse(const char *text, struct gr_diag *diag)
 {
 	struct layout *layout = NULL;
-	char *whole = with_trackers(text);
+	char *room = room_text(), *whole = layout_text_with_trackers(room, text);
 
 	layout_text_parse(whole, &layout, diag);
 	free(whole);
+	free(room);
 	return layout;
 }
 
@@ -111,14 +105,9 @@ static void what_it_does_not_say_is_the_default(void **state)
 	gr_diag_finish(&diag);
 }
 
-struct fault {
-	const char *find, *replace, *mark, *key, *message;
-	unsigned errors; /* 0: a warning */
-};
-
 #define A99 "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"
 
-static const struct fault faults[] = {
+static const struct layout_fault faults[] = {
 	{ "\"10.0.0.5\"", "\"controller\"", "controller", "trackers[0].dtrack.address",
 	  "\"controller\" is not a numeric IPv4 address; write it as 192.0.2.1", 1 },
 	{ "\"10.0.0.5\"", "\"2001:db8::1\"", "2001", "trackers[0].dtrack.address",
@@ -164,37 +153,15 @@ static const struct fault faults[] = {
 	  "kind = \"vrpn\"", "trackers[1].vrpn", "missing; say which device of which server: vrpn = {", 2 },
 };
 
-/* 1 when the fault is not named as it should be. */
-static unsigned check_fault(const struct fault *fault)
-{
-	char *text = unit_replace(trackers, fault->find, fault->replace), *whole = with_trackers(text);
-	struct gr_diag diag = { 0 };
-	struct layout *layout = NULL;
-	char start[256];
-	unsigned bad = 0;
-
-	layout_text_parse(whole, &layout, &diag);
-	snprintf(start, sizeof start, "t.cave:%d: %s", unit_line(whole, fault->mark), fault->key);
-	if (!unit_diag_has(&diag, fault->errors ? GR_DIAG_ERROR : GR_DIAG_WARNING, start, fault->message) ||
-	    diag.errors != fault->errors) {
-		printf("# wanted %s...%s... and %u errors\n", start, fault->message, fault->errors);
-		unit_diag_print(&diag);
-		bad = 1;
-	}
-	layout_destroy(&layout);
-	gr_diag_finish(&diag);
-	free(whole);
-	free(text);
-	return bad;
-}
-
 static void faults_are_named(void **state)
 {
+	char *room = room_text();
 	unsigned bad = 0;
 
 	(void)state;
 	for (size_t i = 0; i < sizeof faults / sizeof *faults; i++)
-		bad += check_fault(&faults[i]);
+		bad += layout_text_check_fault(&faults[i], room, trackers);
+	free(room);
 	assert_int_equal(bad, 0);
 }
 

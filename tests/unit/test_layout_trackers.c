@@ -16,20 +16,10 @@ static const char devices[] =
 	"	    buttons = \"bumper - 1\"; axes = \"stick_x -stick_y\"; } ); }\n"
 	");\n";
 
-static char *with_devices(const char *text)
-{
-	const size_t len = (size_t)(strstr(layout_text, "trackers = ") - layout_text);
-	char *whole = malloc(len + strlen(text) + 1);
-
-	memcpy(whole, layout_text, len);
-	strcpy(whole + len, text);
-	return whole;
-}
-
 static struct layout *parse(const char *text, struct gr_diag *diag)
 {
 	struct layout *layout;
-	char *whole = with_devices(text);
+	char *whole = layout_text_with_trackers(layout_text, text);
 
 	layout_text_parse(whole, &layout, diag);
 	free(whole);
@@ -110,12 +100,7 @@ static void written_and_read_again(void **state)
 	free(second);
 }
 
-struct fault {
-	const char *find, *replace, *mark, *key, *message;
-	unsigned errors;
-};
-
-static const struct fault faults[] = {
+static const struct layout_fault faults[] = {
 	{ "sensor = \"right\"; input = false;", "sensor = \"right\";", "position = false",
 	  "trackers[1].bind[0].input", "tracker \"one\" gives the wand's input already; say input = false in one",
 	  1 },
@@ -152,37 +137,13 @@ static const struct fault faults[] = {
 	  "name = \"new\"", "trackers[1].head", "tracker \"one\" tracks the head already", 1 },
 };
 
-static unsigned check_fault(const struct fault *fault)
-{
-	char *text = unit_replace(devices, fault->find, fault->replace), *whole = with_devices(text);
-	struct gr_diag diag = { 0 };
-	struct layout *layout = NULL;
-	char start[256];
-	const enum gr_severity severity =
-		strstr(fault->message, "not used") ? GR_DIAG_WARNING : GR_DIAG_ERROR;
-	unsigned bad = 0;
-
-	layout_text_parse(whole, &layout, &diag);
-	snprintf(start, sizeof start, "t.cave:%d: %s: ", unit_line(whole, fault->mark), fault->key);
-	if (!unit_diag_has(&diag, severity, start, fault->message) || diag.errors != fault->errors) {
-		printf("# wanted %s...%s... and %u errors\n", start, fault->message, fault->errors);
-		unit_diag_print(&diag);
-		bad = 1;
-	}
-	layout_destroy(&layout);
-	gr_diag_finish(&diag);
-	free(whole);
-	free(text);
-	return bad;
-}
-
 static void faults_are_named(void **state)
 {
 	unsigned bad = 0;
 
 	(void)state;
 	for (size_t i = 0; i < sizeof faults / sizeof *faults; i++)
-		bad += check_fault(&faults[i]);
+		bad += layout_text_check_fault(&faults[i], layout_text, devices);
 	assert_int_equal(bad, 0);
 }
 

@@ -64,18 +64,6 @@ static unsigned gap(struct fdp_reassembly *r, const struct sent *s, unsigned i, 
 	return fdp_reassembly_gap(r, &h, bitmap);
 }
 
-static void shuffle(struct unit_random *r, unsigned *order, unsigned n)
-{
-	for (unsigned i = 0; i < n; i++)
-		order[i] = i;
-	for (unsigned i = n; i > 1; i--) {
-		const unsigned k = unit_random_u32(r) % i, t = order[i - 1];
-
-		order[i - 1] = order[k];
-		order[k] = t;
-	}
-}
-
 /* Of count + parity parts, in any order and each twice, the first count make it whole, no fewer. */
 static void any_of_them(void **state)
 {
@@ -97,7 +85,7 @@ static void any_of_them(void **state)
 		assert_true(s.count >= 2 && s.parity * s.chunk <= FDP_MESSAGE_MAX);
 		memset(re.bytes, 0xee, sizeof re.bytes); /* what was there before is no part of it */
 		fdp_reassembly_reset(&re);
-		shuffle(&r, order, s.count + s.parity);
+		unit_shuffle(&r, order, s.count + s.parity);
 		for (unsigned i = 0; i < s.count + s.parity; i++) {
 			uint8_t bitmap[FDP_BITMAP_BYTES];
 
@@ -127,7 +115,7 @@ static void in_order(struct unit_random *r, const struct sent *s, unsigned lose,
 	const unsigned from = unit_random_u32(r) % (parts - lose + 1);
 	bool whole = false;
 
-	shuffle(r, order, parts);
+	unit_shuffle(r, order, parts);
 	for (unsigned i = 0; i < lose; i++)
 		lost[burst ? from + i : order[i]] = true;
 	fdp_reassembly_reset(&re);

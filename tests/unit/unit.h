@@ -35,6 +35,19 @@ static inline double unit_random_range(struct unit_random *r, double low, double
 	return low + (high - low) * (unit_random_u32(r) * 0x1p-32);
 }
 
+/* 0..n-1 in any order (Fisher and Yates). */
+static inline void unit_shuffle(struct unit_random *r, unsigned *order, unsigned n)
+{
+	for (unsigned i = 0; i < n; i++)
+		order[i] = i;
+	for (unsigned i = n; i > 1; i--) {
+		const unsigned k = unit_random_u32(r) % i, t = order[i - 1];
+
+		order[i - 1] = order[k];
+		order[k] = t;
+	}
+}
+
 static inline struct unit_random unit_random_start(const char *name)
 {
 	const char *given = getenv("GROTTO_TEST_SEED");
