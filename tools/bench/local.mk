@@ -1,6 +1,6 @@
 # The lattice benchmark; its room and its truth serve the accuracy tests, too.
 LATTICE_ROOM_SOURCES = tools/bench/room.c tools/bench/room.h \
-	tools/bench/truth.c tools/bench/truth.h
+	tools/bench/truth.c tools/bench/truth.h tools/bench/random.h
 LATTICE_BENCH_SOURCES = $(LATTICE_ROOM_SOURCES) tools/bench/lpv_bench.c tools/bench/lpv_bench.h
 SURFEL_BENCH_SOURCES = $(LATTICE_ROOM_SOURCES) tools/bench/surfel_cpu.c tools/bench/surfel_cpu.h
 

@@ -1,6 +1,7 @@
 #include "tools/bench/truth.h"
 
 #include "base/result.h"
+#include "tools/bench/random.h"
 
 #include <math.h>
 #include <string.h>
@@ -10,15 +11,9 @@
 
 static const float no_override[3] = { -1, -1, -1 };
 
-/* PCG32 (O'Neill 2014). */
-static double uniform(uint64_t *state)
+static double uniform(struct bench_random *random)
 {
-	uint64_t old = *state;
-	uint32_t x = (uint32_t)(((old >> 18) ^ old) >> 27);
-	uint32_t turn = (uint32_t)(old >> 59);
-
-	*state = old * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-	return ((x >> turn) | (x << ((32 - turn) & 31))) * 0x1p-32;
+	return bench_random_u32(random) * 0x1p-32;
 }
 
 static float dot3(const float a[3], const float b[3])
@@ -171,15 +166,15 @@ size_t truth_points(const struct truth *truth, uint64_t seed, float margin,
 		    struct truth_sample *out, size_t count)
 {
 	size_t triangles = truth->scene->index_count / 3, found = 0;
-	uint64_t state = seed * 2 + 1;
+	struct bench_random random = { seed * 2 + 1 };
 	double total = 0;
 	float n[3];
 
 	for (size_t t = 0; t < triangles; t++)
 		total += triangle(truth->scene, t, n);
 	for (size_t k = 0; k < count; k++) {
-		double at = ((double)k + uniform(&state)) / (double)count * total, sum = 0;
-		double u = sqrt(uniform(&state)), v = uniform(&state);
+		double at = ((double)k + uniform(&random)) / (double)count * total, sum = 0;
+		double u = sqrt(uniform(&random)), v = uniform(&random);
 		struct truth_sample *s = &out[found];
 		size_t t = 0;
 
@@ -206,7 +201,7 @@ size_t truth_points(const struct truth *truth, uint64_t seed, float margin,
 }
 
 /* One path's estimate of the indirect irradiance. */
-static void trace_path(const struct truth *truth, const struct truth_sample *s, uint64_t *state,
+static void trace_path(const struct truth *truth, const struct truth_sample *s, struct bench_random *random,
 		       double out[3])
 {
 	float position[3], normal[3];
@@ -216,7 +211,7 @@ static void trace_path(const struct truth *truth, const struct truth_sample *s, 
 	memcpy(normal, s->normal, sizeof normal);
 	memset(out, 0, 3 * sizeof *out);
 	for (int bounce = 0; bounce < MAX_BOUNCES; bounce++) {
-		double r = sqrt(uniform(state)), phi = 2 * PI * uniform(state);
+		double r = sqrt(uniform(random)), phi = 2 * PI * uniform(random);
 		float u[3], v[3], to[3], from[3], e[3];
 		struct ray_hit hit;
 		struct surface_point at;
@@ -244,7 +239,7 @@ static void trace_path(const struct truth *truth, const struct truth_sample *s, 
 		if (bounce >= 3) {
 			double keep = fmin(most, 0.95);
 
-			if (uniform(state) >= keep)
+			if (uniform(random) >= keep)
 				return;
 			for (int c = 0; c < 3; c++)
 				weight[c] /= keep;
@@ -256,14 +251,13 @@ void truth_trace(const struct truth *truth, uint64_t seed, int paths,
 		 struct truth_sample *samples, size_t count)
 {
 	for (size_t k = 0; k < count; k++) {
-		uint64_t state = (seed + k) * 2 + 1;
+		struct bench_random random = bench_random_start(seed + k);
 		double square = 0, mean = 0;
 
-		uniform(&state);
 		for (int p = 0; p < paths; p++) {
 			double e[3];
 
-			trace_path(truth, &samples[k], &state, e);
+			trace_path(truth, &samples[k], &random, e);
 			for (int c = 0; c < 3; c++)
 				samples[k].irradiance[c] += e[c] / paths;
 			double m = (e[0] + e[1] + e[2]) / 3;
