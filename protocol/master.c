@@ -198,8 +198,12 @@ void fdp_master_announce(struct fdp_master *m, int to, enum fdp_kind kind)
 
 static void announce_to_each(struct fdp_master *m, uint64_t nodes, enum fdp_kind kind)
 {
-	/* Who takes nothing out of its socket hears the PROBE that all get now and then. */
-	nodes = fdp_master_with_room(m, nodes, 0);
+	/*
+	 * Who seems to take nothing out of its socket is still asked once in a frame: what was
+	 * lost on the way looks the same, and only an answer tells.
+	 */
+	if (kind != FDP_PROBE || m->probes > 1)
+		nodes = fdp_master_with_room(m, nodes, 0);
 	/*
 	 * In turns, so that each is the first now and then: its way is then no
 	 * longer than the way back, and that exchange is the one that its clock

@@ -6,7 +6,8 @@
  * Sent is counted as the kernel counts it, each datagram with the room that holds it.
  * Taken out is what was sent before something that the node speaks of: a frame that it
  * acknowledges, a PROBE or SWAP of which it says the time back. (From its own socket; the
- * group's is read after it.) Silence opens nothing: who is stuck gets no more. Pure.
+ * group's is read after it.) Silence opens nothing: who is stuck gets no more
+ * than a PROBE a frame. Pure.
  */
 #ifndef GROTTO_PROTOCOL_WINDOW_H
 #define GROTTO_PROTOCOL_WINDOW_H

@@ -107,11 +107,7 @@ static struct outcome run(const struct weather *w, size_t nodes, bool multicast,
 	return o;
 }
 
-/*
- * Of a few hundred frames every one, to every node, at 120 Hz; what parity is for it does.
- * Always the same weather unless a seed is given: in one of forty a node that loses 5 %
- * of 64 KB states in runs, by unicast, is evicted once.
- */
+/* Of a few hundred frames every one, to every node, at 120 Hz; what parity is for it does. */
 static void in_the_frame(void **state)
 {
 	const uint64_t seed = getenv("GROTTO_TEST_SEED") ? sim_seed_of("in the frame") : 1;
