@@ -312,6 +312,7 @@ static enum fdp_standby_change join(struct fdp_standby *s, int64_t now_ns)
 
 	s->joined = s->left = false;
 	s->outranked = 0;
+	s->listens_ns = 0;
 	if (ruled)
 		fdp_master_leave(s->master, now_ns);
 	fdp_master_renew(s->master, fdp_master_session(s->master), NULL, 0);
