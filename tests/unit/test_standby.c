@@ -194,6 +194,28 @@ static void starts_anew(void **state)
 	room_finish(&r);
 }
 
+/* The same, but stopped while it listened, and for longer than that: it has what waited to look at first. */
+static void stopped_while_it_listens(void **state)
+{
+	(void)state;
+	for (int after_us = 0; after_us < 5000; after_us += 50) {
+		struct room r;
+
+		room_start(&r, 8, 20);
+		room_kill_master(&r, 0);
+		room_run(&r, 500 * ROOM_MS);
+		room_start_master(&r, 0, false);
+		room_run(&r, after_us * (ROOM_MS / 1000));
+		r.masters[0].hangs = true;
+		room_run(&r, 1500 * ROOM_MS);
+		r.masters[0].hangs = false;
+		room_run(&r, 500 * ROOM_MS); /* asserts that no tick is followed by one at once */
+		assert_one_room(&r, 1);
+		assert_int_equal(r.masters[0].yielded, 1);
+		room_finish(&r);
+	}
+}
+
 /*
  * A ruler that stutters loses the room to who followed it, not to one that starts anew at that
  * very time and knows nothing.
@@ -442,6 +464,7 @@ int main(void)
 		cmocka_unit_test(takes_over),	   cmocka_unit_test(same_state),
 		cmocka_unit_test(cut_off),	   cmocka_unit_test(comes_back),
 		cmocka_unit_test(starts_anew),	   cmocka_unit_test(stutters),
+		cmocka_unit_test(stopped_while_it_listens),
 		cmocka_unit_test(all_masters_die),
 		cmocka_unit_test(partition),	   cmocka_unit_test(two_standbys),
 		cmocka_unit_test(master_leaves),   cmocka_unit_test(claims),
