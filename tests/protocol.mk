@@ -21,6 +21,7 @@ PROTOCOL_TESTS = \
 	tests/unit/test_cluster_day \
 	tests/unit/test_cluster_hostile \
 	tests/unit/test_fragment \
+	tests/unit/test_joints \
 	tests/unit/test_key \
 	tests/unit/test_pace \
 	tests/unit/test_pack \
@@ -57,6 +58,10 @@ tests_unit_test_cluster_hostile_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_fragment_SOURCES = tests/unit/test_fragment.c tests/unit/unit.h
 tests_unit_test_fragment_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_fragment_LDADD = $(PROTOCOL_TEST_LDADD)
+tests_unit_test_joints_SOURCES = tests/unit/test_joints.c tests/unit/skinned.c tests/unit/skinned.h \
+	tests/unit/shared.h tests/unit/unit.h
+tests_unit_test_joints_CFLAGS = $(PROTOCOL_TEST_CFLAGS) $(ASSIMP_CFLAGS)
+tests_unit_test_joints_LDADD = $(PROTOCOL_TEST_LDADD) $(ASSIMP_LIBS)
 tests_unit_test_key_SOURCES = tests/unit/test_key.c tests/unit/unit.h
 tests_unit_test_key_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_key_LDADD = $(PROTOCOL_TEST_LDADD)
