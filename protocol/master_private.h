@@ -61,12 +61,11 @@ _Static_assert(FDP_BULK_NODE_BURST >= FDP_DATAGRAM_MAX, "a bucket must hold what
 #define FDP_BULK_REST_NS INT64_C(300000)
 /*
  * What is passed on as it comes: of a light that moves, what goes over 1 Gbit/s beside the
- * frames. When a division begins all nodes send all of the light: where that is more, it is no
- * more than what a delta can wait for, until each has sent its part. The rest waits.
+ * frames. When a division begins all nodes send all of the light: where that is more than the
+ * burst it waits, until each has sent its part.
  */
 #define FDP_PASS_BYTES_S 110000000
 #define FDP_PASS_BURST 2097152
-#define FDP_FRESH_BURST 262144
 
 #define FDP_PATHS 64 /* ways of a SWAP that its lead is measured by */
 

@@ -82,10 +82,11 @@ static void send_lack(struct fdp_master *m, unsigned node, const struct fdp_lack
 /* Whether so much, of this slice, may be passed on as it comes. */
 static bool may_pass(struct fdp_master *m, const struct fdp_piece *piece, size_t len)
 {
+	static const struct fdp_rate rate = { FDP_PASS_BYTES_S, FDP_PASS_BURST };
 	const uint64_t light = (uint64_t)piece->len * piece->count * (m->group ? 1 : piece->count - 1u);
-	const struct fdp_rate rate = m->fresh && light > FDP_PASS_BURST ? (struct fdp_rate){ m->bulk_all.bytes_s, FDP_FRESH_BURST } :
-						(struct fdp_rate){ FDP_PASS_BYTES_S, FDP_PASS_BURST };
 
+	if (m->fresh && light > FDP_PASS_BURST)
+		return false;
 	fdp_bucket_fill(&m->passed, &rate, m->now_ns);
 	if (m->passed.left < len)
 		return false;

@@ -33,7 +33,7 @@ static void send_report(struct fdp_node *n, enum fdp_kind kind, uint64_t frame, 
 		.swapped_count = n->swapped_count,
 		.swap_ns = n->swap_ns,
 		.render_us = n->current.render_us,
-		.slice = n->slice_frame,
+		.slice = fdp_node_slice_sent(n),
 		.lost = n->lost,
 	};
 

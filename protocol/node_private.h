@@ -6,6 +6,7 @@
 #ifndef GROTTO_PROTOCOL_NODE_PRIVATE_H
 #define GROTTO_PROTOCOL_NODE_PRIVATE_H
 
+#include "protocol/bucket.h"
 #include "protocol/message.h"
 #include "protocol/node.h"
 #include "protocol/outbox.h"
@@ -18,6 +19,15 @@
 #define FDP_JOIN_DEFAULT_NS INT64_C(200000000)
 #define FDP_SILENCE_DEFAULT_NS INT64_C(2000000000)
 #define FDP_GROUP_FRESH_NS INT64_C(1000000000) /* four of the master's PROBEs */
+/*
+ * When a division begins all nodes send all of the light to the master. What is longer than
+ * this, of all, leaves beside the frames, all nodes together at half a gigabit: READY does not
+ * wait for a slice of megabytes, nor do the others' behind it.
+ */
+#define FDP_SLICES_AT_ONCE 2097152
+#define FDP_SLICES_BYTES_S 60000000
+#define FDP_SLICES_BURST 131072
+#define FDP_SLICES_TICK_NS INT64_C(250000)
 
 /* The frame that the daemon is told of. */
 struct fdp_node_frame {
@@ -98,6 +108,13 @@ struct fdp_node {
 	uint64_t slice_frame;  /* of the newest slice that we made in it; 0: none */
 	uint64_t slices_frame; /* that the others' were last given for */
 	uint64_t lack_budget;  /* bytes of ours that may be sent again in this frame */
+	/* Of ours: leaves beside the frames, so far up to this piece; frame 0: nothing does. */
+	struct fdp_node_sending {
+		uint64_t frame;
+		unsigned next;
+		int64_t at_ns;
+		struct fdp_bucket bucket;
+	} sending;
 };
 
 void fdp_node_say(struct fdp_node *n, enum fdp_node_event_kind kind, uint64_t frame);
@@ -143,6 +160,11 @@ enum fdp_verdict fdp_node_on_slice(struct fdp_node *n, const uint8_t *body, size
 enum fdp_verdict fdp_node_on_lack(struct fdp_node *n, const uint8_t *body, size_t len);
 /* The master says which slices there are. */
 void fdp_node_note_slices(struct fdp_node *n, const struct fdp_announce *a, int64_t now_ns);
+/* Frame of the newest slice that has left whole; 0: none. */
+static inline uint64_t fdp_node_slice_sent(const struct fdp_node *n)
+{
+	return n->sending.frame ? 0 : n->slice_frame;
+}
 void fdp_node_share_tick(struct fdp_node *n, int64_t now_ns);
 int64_t fdp_node_share_next(const struct fdp_node *n);
 

@@ -12,14 +12,14 @@ void fdp_node_share_reset(struct fdp_node *n)
 {
 	fdp_share_reset(&n->share);
 	n->shared = n->shared_since = 0;
-	n->slice_frame = n->slices_frame = 0;
+	n->slice_frame = n->slices_frame = n->sending.frame = 0;
 }
 
 void fdp_node_share_frame(struct fdp_node *n, const struct fdp_state_head *head)
 {
 	n->lack_budget = 4 * fdp_share_slice_max(&n->share);
 	if (head->shared_since != n->shared_since)
-		n->slice_frame = 0;
+		n->slice_frame = n->sending.frame = 0;
 	n->shared = head->shared;
 	n->shared_since = head->shared_since;
 	if (n->shared && n->share.room)
@@ -59,13 +59,31 @@ static void send_piece(struct fdp_node *n, unsigned index, const struct fdp_slic
 		fdp_outbox_send(&n->out, FDP_TO_ALL, FDP_SLICE, len);
 }
 
+/* As much of what leaves beside the frames as may. */
+static void send_some(struct fdp_node *n, unsigned index, int64_t now_ns)
+{
+	const uint64_t count = n->share.count, burst = FDP_SLICES_BURST / count, least = n->out.datagram_max;
+	const struct fdp_rate rate = { FDP_SLICES_BYTES_S / count, burst > least ? burst : least };
+	struct fdp_node_sending *sending = &n->sending;
+	const struct fdp_slice *slice = fdp_share_find(&n->share, index, sending->frame);
+
+	fdp_bucket_fill(&sending->bucket, &rate, now_ns);
+	while (slice && sending->next < slice->pieces && sending->bucket.left >= least) {
+		send_piece(n, index, slice, sending->next++);
+		sending->bucket.left -= least;
+	}
+	sending->at_ns = now_ns + FDP_SLICES_TICK_NS;
+	if (!slice || sending->next >= slice->pieces)
+		sending->frame = 0;
+}
+
 int fdp_node_slice(struct fdp_node *n, uint64_t frame, const uint8_t *bytes, size_t len,
 		   int64_t now_ns)
 {
 	struct fdp_slice *slice;
+	bool first;
 	unsigned index;
 
-	(void)now_ns;
 	if (n->status != FDP_NODE_LIVE || !frame || frame != n->current.frame ||
 	    !sharing(n, &index) || n->share.count < 2 || frame <= n->slice_frame)
 		return GR_NOTHING;
@@ -73,9 +91,18 @@ int fdp_node_slice(struct fdp_node *n, uint64_t frame, const uint8_t *bytes, siz
 			      n->out.datagram_max - FDP_HEADER_BYTES - FDP_PIECE_HEAD);
 	if (!slice)
 		return GR_ERR_RANGE;
+	first = !n->slice_frame;
 	n->slice_frame = frame;
 	n->share.counts.sent++;
 	n->share.counts.bytes_sent += len;
+	/* One that is on its way has been overtaken. */
+	n->sending.frame = 0;
+	if (first && len * n->share.count > FDP_SLICES_AT_ONCE) {
+		n->sending.frame = frame;
+		n->sending.next = 0;
+		send_some(n, index, now_ns);
+		return GR_OK;
+	}
 	for (unsigned i = 0; i < slice->pieces; i++)
 		send_piece(n, index, slice, i);
 	return GR_OK;
@@ -128,6 +155,8 @@ enum fdp_verdict fdp_node_on_lack(struct fdp_node *n, const uint8_t *body, size_
 		return FDP_BAD_FORMAT;
 	slice = fdp_share_find(&n->share, own, lack.frame);
 	for (unsigned i = 0; slice && fdp_slice_whole(slice) && i < slice->pieces; i++) {
+		if (n->sending.frame == lack.frame && i >= n->sending.next)
+			break; /* has yet to leave */
 		if (!fdp_slice_answers(slice, &lack, i))
 			continue;
 		if (n->lack_budget < slice->chunk)
@@ -206,7 +235,11 @@ void fdp_node_share_tick(struct fdp_node *n, int64_t now_ns)
 {
 	unsigned own;
 
-	if (!n->share.open || !sharing(n, &own))
+	if (!sharing(n, &own))
+		return;
+	if (n->sending.frame && now_ns >= n->sending.at_ns)
+		send_some(n, own, now_ns);
+	if (!n->share.open)
 		return;
 	for (unsigned i = 0; i < n->share.count; i++)
 		for (unsigned lane = 0; lane < FDP_SHARE_LANES; lane++) {
@@ -226,7 +259,11 @@ int64_t fdp_node_share_next(const struct fdp_node *n)
 	int64_t next = INT64_MAX;
 	unsigned own;
 
-	if (!n->share.open || !sharing(n, &own))
+	if (!sharing(n, &own))
+		return next;
+	if (n->sending.frame)
+		next = n->sending.at_ns;
+	if (!n->share.open)
 		return next;
 	for (unsigned i = 0; i < n->share.count; i++)
 		for (unsigned lane = 0; lane < FDP_SHARE_LANES; lane++) {

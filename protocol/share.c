@@ -243,10 +243,8 @@ enum fdp_fragment_result fdp_share_add(struct fdp_share *s, const struct fdp_pie
 	memcpy(fdp_share_bytes(s, piece->index, slice) + piece->at, bytes, len);
 	slice->got[number / 64] |= UINT64_C(1) << number % 64;
 	slice->have++;
-	if (slice->asks) {
-		slice->asks = 0; /* it comes: asking is worth while, once no more does */
-		slice->asked_ns = now_ns;
-	}
+	slice->asks = 0; /* it comes: asking is worth while, once no more does */
+	slice->asked_ns = now_ns;
 	if (!fdp_slice_whole(slice))
 		return FDP_FRAGMENT_PART;
 	s->open--;

@@ -3,7 +3,7 @@
  * allowed, a network namespace of its own, which live through all runs of a bench;
  * protocol, sockets and priority are the daemons'. All have the one CLOCK_MONOTONIC
  * of this machine: times of different ends may be subtracted. Private to
- * bench-barrier and bench-delivery.
+ * bench-barrier, bench-delivery and bench-rejoin.
  */
 #ifndef GROTTO_TOOLS_BENCH_CLUSTER_H
 #define GROTTO_TOOLS_BENCH_CLUSTER_H
@@ -54,6 +54,7 @@ struct bench_cluster {
 	char addresses[CLUSTER_NODES_MOST + 1][16]; /* the last is the master's */
 	unsigned node_count;
 	int64_t period_ns;
+	size_t share_bytes; /* of the light that nodes share out; 0: none is */
 	bool spaces;        /* namespaces; else loopback */
 	uint64_t session;   /* of this run, from 1 */
 	atomic_bool failed; /* an end; nothing more is run */

@@ -23,6 +23,7 @@ bool cluster_master_open(struct cluster_master *master, struct fdp_master_params
 	params.node_count = c->node_count;
 	params.datagram_max = net_datagram_max(&c->layout.network);
 	params.multicast = c->layout.network.cast == LAYOUT_MULTICAST;
+	params.share_bytes = c->share_bytes;
 	params.swap_lead_most_ns = c->period_ns / 4;
 	return net_open_master(&master->net, &c->layout, 0) == GR_OK &&
 	       fdp_master_create(&master->fdp, &params, &ops) == GR_OK &&
@@ -49,13 +50,16 @@ bool cluster_node_open(struct cluster_node *node,
 {
 	const struct bench_cluster *c = node->cluster;
 	const struct fdp_node_ops ops = { node_send, event, node };
-	const struct fdp_node_params params = {
+	struct fdp_node_params params = {
 		.index = (uint16_t)node->index, .name = c->nodes[node->index].name,
 		.datagram_max = net_datagram_max(&c->layout.network),
+		.share_bytes = c->share_bytes,
 	};
 
-	return net_open_node(&node->net, &c->layout, node->index) == GR_OK &&
-	       fdp_node_create(&node->fdp, &params, &ops) == GR_OK;
+	if (net_open_node(&node->net, &c->layout, node->index) != GR_OK)
+		return false;
+	params.receive_bytes = net_receive_bytes(node->net);
+	return fdp_node_create(&node->fdp, &params, &ops) == GR_OK;
 }
 
 void cluster_node_close(struct cluster_node *node)

@@ -43,7 +43,7 @@ tools_bench_bake_SOURCES = tools/bench/bake.c tools/bench/atrium.c tools/bench/a
 tools_bench_bake_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS)
 tools_bench_bake_LDADD = $(RENDERER_LIBS)
 
-# A master and nodes in processes of their own: what the next two have in common.
+# A master and nodes in processes of their own: what the next three have in common.
 CLUSTER_SOURCES = \
 	tools/bench/cluster.c tools/bench/cluster.h \
 	tools/bench/cluster_ends.c tools/bench/cluster_ends.h \
@@ -91,6 +91,15 @@ tools_bench_delivery_64k_SOURCES = $(DELIVERY_BALLAST_SOURCES)
 tools_bench_delivery_64k_CPPFLAGS = $(DELIVERY_BALLAST_CPPFLAGS) -DBALLAST_WORDS=16000
 tools_bench_delivery_64k_CFLAGS = $(DELIVERY_BALLAST_CFLAGS)
 tools_bench_delivery_64k_LDADD = $(DELIVERY_BALLAST_LIBS)
+
+# A node that comes back to a room that shares 8 MiB of light; `make bench-rejoin`.
+EXTRA_PROGRAMS += tools/bench-rejoin
+bench-rejoin: tools/bench-rejoin
+tools_bench_rejoin_SOURCES = \
+	tools/bench/rejoin.c tools/bench/rejoin.h \
+	tools/bench/rejoin_ends.c $(CLUSTER_SOURCES)
+tools_bench_rejoin_CFLAGS = $(CLUSTER_CFLAGS)
+tools_bench_rejoin_LDADD = $(CLUSTER_LIBS) $(PROTOCOL_LIBS) -lpthread -lm
 
 # Recorded sessions and shared light packed; `make bench-packing`.
 EXTRA_PROGRAMS += tools/bench-packing
