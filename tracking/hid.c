@@ -1,12 +1,16 @@
+/* What is plugged in, and how it is opened. Which one is meant is in hid_choose.c. */
 #include "tracking/hid.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <libudev.h>
+#include <poll.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
+
+#define SLICE_MS 20
 
 /* hid_init is not thread safe; after it hid_enumerate and hid_open_path are. */
 static pthread_once_t once = PTHREAD_ONCE_INIT;
@@ -55,6 +59,25 @@ static int by_path(const void *a, const void *b)
 	return l != r ? (l > r) - (l < r) : strcmp(left->path, right->path);
 }
 
+static void add_usage(struct track_hid_node *node, const struct hid_device_info *info)
+{
+	const uint32_t usage = TRACK_HID_USAGE(info->usage_page, info->usage);
+
+	for (int i = 0; i < TRACK_HID_USAGES; i++)
+		if (!node->usages[i] || node->usages[i] == usage) {
+			node->usages[i] = usage;
+			return;
+		}
+}
+
+static struct track_hid_node *known(struct track_hid_node *nodes, int count, const char *path)
+{
+	for (int i = 0; i < count; i++)
+		if (!strcmp(nodes[i].path, path))
+			return &nodes[i];
+	return NULL;
+}
+
 int track_hid_list(uint16_t vendor, uint16_t product, struct track_hid_node *out, int room)
 {
 	struct hid_device_info *all;
@@ -62,33 +85,35 @@ int track_hid_list(uint16_t vendor, uint16_t product, struct track_hid_node *out
 
 	pthread_once(&once, init);
 	all = hid_enumerate(vendor, product);
-	for (const struct hid_device_info *i = all; i && count < room; i = i->next) {
-		struct track_hid_node *node = &out[count];
-		bool known = false;
-
-		if (!i->path || strlen(i->path) >= sizeof node->path)
-			continue;
+	for (const struct hid_device_info *i = all; i; i = i->next) {
 		/* hidapi lists a node once for each of its usages. */
-		for (int k = 0; k < count; k++)
-			known = known || !strcmp(out[k].path, i->path);
-		if (known)
+		struct track_hid_node *node = i->path ? known(out, count, i->path) : NULL;
+
+		if (!i->path || strlen(i->path) >= sizeof node->path || (!node && count == room))
 			continue;
+		if (node) {
+			add_usage(node, i);
+			continue;
+		}
+		node = &out[count++];
 		*node = (struct track_hid_node){
 			.vendor = i->vendor_id,
 			.product = i->product_id,
 			.interface = i->interface_number,
 			.bluetooth = i->bus_type == HID_API_BUS_BLUETOOTH,
 		};
+		add_usage(node, i);
 		strcpy(node->path, i->path);
 		narrow(node->serial, sizeof node->serial, i->serial_number);
 		narrow(node->name, sizeof node->name, i->product_string);
 		device_of(node->device, sizeof node->device, i->path);
-		count++;
 	}
 	hid_free_enumeration(all);
 	qsort(out, (size_t)count, sizeof *out, by_path);
 	return count;
 }
+
+/* ---- opening and reading ---- */
 
 /* hidapi does not say why: the system does, asked once more. */
 static enum track_state why_not(const struct track_hid_node *node, char *why, size_t size)
@@ -127,4 +152,25 @@ enum track_state track_hid_open(const struct track_hid_node *node, hid_device **
 	pthread_once(&once, init);
 	*out = hid_open_path(node->path);
 	return *out ? TRACK_RUNNING : why_not(node, why, size);
+}
+
+static bool is_to_end(const struct track_device *device)
+{
+	struct pollfd wake = { .fd = track_device_wake_fd(device), .events = POLLIN };
+
+	return poll(&wake, 1, 0) > 0;
+}
+
+int track_hid_read(const struct track_device *device, hid_device *hid, uint8_t *bytes, size_t size,
+		   int timeout_ms)
+{
+	int n = 0;
+
+	do {
+		const int slice_ms = timeout_ms < SLICE_MS ? timeout_ms : SLICE_MS;
+
+		n = hid_read_timeout(hid, bytes, size, slice_ms);
+		timeout_ms -= slice_ms;
+	} while (n == 0 && timeout_ms > 0 && !is_to_end(device));
+	return n;
 }

@@ -93,11 +93,10 @@ static enum track_state open_pair(struct hydra *h, const struct track_hid_node *
 static void start(struct hydra *h)
 {
 	uint8_t bytes[64];
-	int n = 0;
+	int n;
 
 	h->state = (struct track_hydra_state){ 0 };
-	for (int ms = 0; ms < LISTEN_MS && n == 0; ms += LISTEN_MS / 5)
-		n = hid_read_timeout(h->reports, bytes, sizeof bytes, LISTEN_MS / 5);
+	n = track_hid_read(&h->device, h->reports, bytes, sizeof bytes, LISTEN_MS);
 	h->heard = n == TRACK_HYDRA_BYTES;
 	h->was_gamepad = !h->heard;
 	if (!h->heard)
@@ -171,7 +170,7 @@ static int read_hydra(struct track_device *device, int timeout_ms, char *why, si
 	struct hydra *h = (struct hydra *)device;
 	uint8_t bytes[64];
 	const int wait_ms = timeout_ms < TRACK_HID_WAIT_MS ? timeout_ms : TRACK_HID_WAIT_MS;
-	const int n = hid_read_timeout(h->reports, bytes, sizeof bytes, wait_ms);
+	const int n = track_hid_read(device, h->reports, bytes, sizeof bytes, wait_ms);
 
 	if (n > 0)
 		return take(h, bytes, (size_t)n, why, size);

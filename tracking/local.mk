@@ -7,7 +7,7 @@ tracking_libgtracking_a_SOURCES = \
 	tracking/dtrack.h tracking/dtrack_decode.c tracking/dtrack_device.c \
 	tracking/dtrack_report.c \
 	tracking/handover.c tracking/handover.h \
-	tracking/hid.c tracking/hid.h \
+	tracking/hid.c tracking/hid.h tracking/hid_choose.c \
 	tracking/filter.c tracking/filter.h tracking/filter_private.h \
 	tracking/filter_exponential.c \
 	tracking/filter_fit.c \
