@@ -7,6 +7,7 @@ include $(top_srcdir)/tests/protocol.mk
 include $(top_srcdir)/tests/tracking.mk
 include $(top_srcdir)/tests/networks.mk
 include $(top_srcdir)/tests/polhemus.mk
+include $(top_srcdir)/tests/pads.mk
 include $(top_srcdir)/tests/record.mk
 include $(top_srcdir)/tests/gl.mk
 include $(top_srcdir)/tests/gi.mk

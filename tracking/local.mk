@@ -7,7 +7,10 @@ tracking_libgtracking_a_SOURCES = \
 	tracking/dtrack.h tracking/dtrack_decode.c tracking/dtrack_device.c \
 	tracking/dtrack_report.c \
 	tracking/handover.c tracking/handover.h \
+	tracking/gamepad.h tracking/gamepad_device.c \
 	tracking/hid.c tracking/hid.h tracking/hid_choose.c \
+	tracking/hid_descriptor.c tracking/hid_descriptor.h \
+	tracking/hid_fields.c tracking/hid_fields.h tracking/hid_values.c \
 	tracking/filter.c tracking/filter.h tracking/filter_private.h \
 	tracking/filter_exponential.c \
 	tracking/filter_fit.c \
@@ -17,6 +20,7 @@ tracking_libgtracking_a_SOURCES = \
 	tracking/hotplug.c tracking/hotplug.h \
 	tracking/hydra.h tracking/hydra_decode.c tracking/hydra_device.c \
 	tracking/liberty.c tracking/liberty.h \
+	tracking/imu.c tracking/imu.h \
 	tracking/polhemus.h tracking/polhemus_private.h tracking/polhemus_device.c tracking/polhemus_find.c \
 	tracking/polhemus_liberty.c tracking/polhemus_viper.c \
 	tracking/polhemus_reports.c tracking/polhemus_reports.h \
@@ -27,7 +31,10 @@ tracking_libgtracking_a_SOURCES = \
 	tracking/report.c tracking/report.h \
 	tracking/rotation.c tracking/rotation.h \
 	tracking/sim.c tracking/sim.h \
+	tracking/sony.h tracking/sony_decode.c tracking/sony_device.c \
+	tracking/sony_report.c \
 	tracking/source.c tracking/source.h \
+	tracking/spacemouse.h tracking/spacemouse_decode.c tracking/spacemouse_device.c \
 	tracking/text.c tracking/text.h \
 	tracking/usb.c tracking/usb.h tracking/usb_private.h tracking/usb_pipe.c \
 	tracking/viper.c tracking/viper.h \

@@ -1,5 +1,7 @@
 #include "tracking/report.h"
 
+#include <math.h>
+
 const char *track_fault_name(enum track_fault fault)
 {
 	static const char *const name[TRACK_FAULTS] = {
@@ -23,4 +25,11 @@ uint64_t track_unwrap(uint64_t raw, unsigned bits, uint64_t expected)
 	if (ahead < span / 2 || expected + ahead < span)
 		return expected + ahead;
 	return expected + ahead - span;
+}
+
+float track_dead_zone(float value, float zone)
+{
+	const float beyond = fabsf(value) - zone;
+
+	return beyond > 0 ? copysignf(beyond / (1 - zone), value) : 0;
 }

@@ -78,4 +78,10 @@ const char *track_fault_name(enum track_fault fault);
  */
 uint64_t track_unwrap(uint64_t raw, unsigned bits, uint64_t expected);
 
+/*
+ * A stick that rests a little beside its middle: 0 within `zone` (0..0.9) of
+ * it, from there on evenly to -1 and 1. value: -1..1.
+ */
+float track_dead_zone(float value, float zone);
+
 #endif
