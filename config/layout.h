@@ -156,6 +156,10 @@ enum layout_tracker_kind {
 	LAYOUT_TRACKER_PATRIOT,
 	LAYOUT_TRACKER_DTRACK,
 	LAYOUT_TRACKER_VRPN,
+	LAYOUT_TRACKER_GAMEPAD,
+	LAYOUT_TRACKER_DUALSHOCK4,
+	LAYOUT_TRACKER_DUALSENSE,
+	LAYOUT_TRACKER_SPACEMOUSE,
 };
 
 /* The simulated visitor, see tracking/sim.h for what each does. */
@@ -202,6 +206,22 @@ struct layout_vrpn {
 	char *address; /* of the server, numeric IPv4 */
 	uint16_t port;
 	enum layout_transport transport;
+};
+
+/* A gamepad, see tracking/gamepad.h and sony.h. */
+struct layout_pad {
+	float dead_zone;
+	int vendor, product; /* 0: any */
+	char *path;	     /* of the USB bus; NULL: any */
+	char *triggers;	     /* axes by name; NULL: none */
+	char recentre[LAYOUT_NAME_MAX]; /* button; "": none */
+};
+
+/* A SpaceMouse, see tracking/spacemouse.h. */
+struct layout_spacemouse {
+	float speed_m_s, turn_rad_s, reach_m;
+	char home[LAYOUT_NAME_MAX]; /* button; "": none */
+	char *path;		    /* of the USB bus; NULL: any */
 };
 
 enum layout_body { LAYOUT_HEAD, LAYOUT_WAND };
@@ -260,6 +280,8 @@ struct layout_tracker {
 	struct layout_frame room_base; /* T_room_base: where the device's frame is */
 	float scale; /* room metres per metre that the device says */
 	struct layout_polhemus polhemus;
+	struct layout_pad pad;
+	struct layout_spacemouse spacemouse;
 	struct layout_binding bindings[LAYOUT_MAX_BINDINGS];
 	size_t binding_count;
 	int line;
@@ -268,6 +290,8 @@ struct layout_tracker {
 bool layout_tracker_is_device(const struct layout_tracker *tracker);
 /* Whether it is one of Polhemus', which the group of that name is for. */
 bool layout_tracker_is_polhemus(const struct layout_tracker *tracker);
+/* Whether the group "pad" is for it. */
+bool layout_tracker_is_pad(const struct layout_tracker *tracker);
 
 struct layout {
 	char *path; /* as given to layout_load */

@@ -28,5 +28,8 @@ void layout_check_trackers(struct options_reader *reader, const struct layout_fi
 /* Of those: the addresses and ports of tracker i, a device. */
 void layout_check_tracker_network(struct options_reader *reader, const struct layout_file *file,
 				  size_t i);
+/* The groups of gamepads and of SpaceMouse, given to tracker i. */
+void layout_check_tracker_pads(struct options_reader *reader, const struct layout_file *file,
+			       size_t i);
 
 #endif

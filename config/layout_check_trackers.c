@@ -171,6 +171,7 @@ static void check_tracker(struct options_reader *reader, const struct layout_fil
 		 "kind = \"dtrack\" has a controller");
 	not_used(reader, entry, "vrpn", tracker->kind != LAYOUT_TRACKER_VRPN && entry->vrpn.at,
 		 "kind = \"vrpn\" has a server");
+	layout_check_tracker_pads(reader, file, i);
 	if (layout_tracker_is_device(tracker)) {
 		check_device(reader, file, i);
 		layout_check_tracker_network(reader, file, i);

@@ -106,6 +106,16 @@ struct layout_file_polhemus {
 	struct layout_polhemus polhemus;
 };
 
+struct layout_file_pad {
+	const config_setting_t *at;
+	struct layout_pad pad;
+};
+
+struct layout_file_spacemouse {
+	const config_setting_t *at;
+	struct layout_spacemouse spacemouse;
+};
+
 struct layout_file_binding {
 	const config_setting_t *at;
 	struct layout_binding binding;
@@ -120,6 +130,8 @@ struct layout_file_tracker {
 	struct layout_file_filter filter;
 	struct layout_file_base base;
 	struct layout_file_polhemus polhemus;
+	struct layout_file_pad pad;
+	struct layout_file_spacemouse spacemouse;
 	struct layout_file_binding *bindings;
 	size_t binding_count;
 };
@@ -147,6 +159,7 @@ struct layout_file {
 extern const struct option layout_options[];
 extern const struct option layout_tracker_options[];
 extern const struct option layout_dtrack_options[], layout_vrpn_options[];
+extern const struct option layout_pad_options[], layout_spacemouse_options[];
 
 /* Factors from the files' units to ours. */
 #define LAYOUT_RAD_PER_DEG 0.017453292519943295

@@ -10,6 +10,11 @@ bool layout_tracker_is_polhemus(const struct layout_tracker *tracker)
 	return tracker->kind >= LAYOUT_TRACKER_VIPER && tracker->kind <= LAYOUT_TRACKER_PATRIOT;
 }
 
+bool layout_tracker_is_pad(const struct layout_tracker *tracker)
+{
+	return tracker->kind >= LAYOUT_TRACKER_GAMEPAD && tracker->kind <= LAYOUT_TRACKER_DUALSENSE;
+}
+
 bool layout_tracker_is_device(const struct layout_tracker *tracker)
 {
 	return tracker->kind > LAYOUT_TRACKER_REPLAY;
@@ -62,6 +67,15 @@ static void build_network(struct layout_tracker *out, struct layout_file_tracker
 	out->vrpn.address = take(&from->vrpn.vrpn.address);
 }
 
+static void build_pads(struct layout_tracker *out, struct layout_file_tracker *from)
+{
+	out->pad = from->pad.pad;
+	out->pad.path = take(&from->pad.pad.path);
+	out->pad.triggers = take(&from->pad.pad.triggers);
+	out->spacemouse = from->spacemouse.spacemouse;
+	out->spacemouse.path = take(&from->spacemouse.spacemouse.path);
+}
+
 void layout_tracker_build(struct layout_tracker *out, struct layout_file_tracker *from)
 {
 	*out = from->tracker;
@@ -69,6 +83,7 @@ void layout_tracker_build(struct layout_tracker *out, struct layout_file_tracker
 	out->serial = take(&from->tracker.serial);
 	out->sim = from->sim.sim;
 	build_network(out, from);
+	build_pads(out, from);
 	out->filter = from->filter.filter;
 	out->room_base = from->base.room_base;
 	out->scale = from->base.scale;
@@ -96,6 +111,9 @@ void layout_tracker_free(struct layout_tracker *tracker)
 	free(tracker->dtrack.interface);
 	free(tracker->vrpn.device);
 	free(tracker->vrpn.address);
+	free(tracker->pad.path);
+	free(tracker->pad.triggers);
+	free(tracker->spacemouse.path);
 	for (size_t i = 0; i < tracker->binding_count; i++) {
 		free(tracker->bindings[i].buttons);
 		free(tracker->bindings[i].axes);
@@ -126,6 +144,12 @@ void layout_tracker_fill(struct layout_file_tracker *out, const struct layout_tr
 	out->polhemus.polhemus = from->polhemus;
 	if (!layout_tracker_is_polhemus(from))
 		out->polhemus.polhemus.hemisphere[0] = NAN;
+	out->pad.pad = from->pad;
+	if (!layout_tracker_is_pad(from))
+		out->pad.pad.dead_zone = NAN;
+	out->spacemouse.spacemouse = from->spacemouse;
+	if (from->kind != LAYOUT_TRACKER_SPACEMOUSE)
+		out->spacemouse.spacemouse.speed_m_s = NAN;
 	out->bindings = bindings;
 	out->binding_count = from->binding_count;
 	for (size_t i = 0; i < from->binding_count; i++)

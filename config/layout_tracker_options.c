@@ -2,7 +2,8 @@
 #include "config/layout_options.h"
 
 static const char *const kind_choices[] = { "sim",     "replay", "hydra", "viper", "liberty",
-					    "patriot", "dtrack", "vrpn",  NULL };
+					    "patriot", "dtrack", "vrpn",  "gamepad",
+					    "dualshock4", "dualsense", "spacemouse", NULL };
 static const char *const body_choices[] = { "head", "wand", NULL };
 
 #define AT(type, member) .offset = offsetof(struct type, member)
@@ -175,6 +176,10 @@ const struct option layout_tracker_options[] = {
 	  .help = "for a device: where its frame is in the room" },
 	{ .key = "polhemus", .type = OPTION_GROUP, AT(layout_file_tracker, polhemus),
 	  .group = polhemus_options, .help = "for viper, liberty, patriot: how it measures" },
+	{ .key = "pad", .type = OPTION_GROUP, AT(layout_file_tracker, pad), .group = layout_pad_options,
+	  .help = "for gamepad, dualshock4, dualsense: which one, and its sticks" },
+	{ .key = "spacemouse", .type = OPTION_GROUP, AT(layout_file_tracker, spacemouse),
+	  .group = layout_spacemouse_options, .help = "for spacemouse: how fast and how far a body is moved" },
 	{ .key = "bind", .type = OPTION_LIST, .count = LAYOUT_MAX_BINDINGS,
 	  AT(layout_file_tracker, bindings), .size = sizeof(struct layout_file_binding),
 	  .count_offset = offsetof(struct layout_file_tracker, binding_count),

@@ -9,6 +9,7 @@ config_libgconfig_a_SOURCES = \
 	config/layout_check_nodes.c \
 	config/layout_check_room.c \
 	config/layout_check_tracker_network.c \
+	config/layout_check_tracker_pads.c \
 	config/layout_check_trackers.c \
 	config/layout_check_walls.c \
 	config/layout_geometry.c config/layout_geometry.h \
@@ -17,6 +18,7 @@ config_libgconfig_a_SOURCES = \
 	config/layout_tracker.c \
 	config/layout_tracker_network.c \
 	config/layout_tracker_options.c \
+	config/layout_tracker_pads.c \
 	config/layout_write.c \
 	config/options.c config/options.h \
 	config/options_markdown.c \

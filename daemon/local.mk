@@ -27,7 +27,8 @@ daemon_libgdaemon_a_SOURCES = \
 	daemon/socket.c daemon/socket.h \
 	daemon/state_keeper.c daemon/state_keeper.h \
 	daemon/swap_wait.c daemon/swap_wait.h \
-	daemon/tracker_devices.c daemon/tracker_devices.h \
+	daemon/tracker_devices.c daemon/tracker_devices.h daemon/tracker_devices_private.h \
+	daemon/tracker_pads.c \
 	daemon/tracker_filter.c daemon/tracker_filter.h \
 	daemon/tracker_stats.c daemon/tracker_stats.h \
 	daemon/trackers.c daemon/trackers.h \

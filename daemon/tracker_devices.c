@@ -1,4 +1,4 @@
-#include "daemon/tracker_devices.h"
+#include "daemon/tracker_devices_private.h"
 
 #include "base/clock.h"
 #include "base/result.h"
@@ -10,17 +10,21 @@
 #include <stdio.h>
 #include <string.h>
 
-static int create_hydra(struct track_device **out, const struct layout_tracker *tracker)
+static int create_hydra(struct track_device **out, const struct layout *layout,
+			const struct layout_tracker *tracker, struct gr_diag *diag)
 {
 	const struct track_hydra_params params = {
 		.serial = tracker->serial,
 		.number = tracker->number,
 	};
 
+	(void)layout;
+	(void)diag;
 	return track_hydra_create(out, &params, &gr_clock_monotonic);
 }
 
-static int create_polhemus(struct track_device **out, const struct layout_tracker *tracker)
+static int create_polhemus(struct track_device **out, const struct layout *layout,
+			   const struct layout_tracker *tracker, struct gr_diag *diag)
 {
 	const struct layout_polhemus *from = &tracker->polhemus;
 	const struct track_polhemus_params params = {
@@ -36,10 +40,13 @@ static int create_polhemus(struct track_device **out, const struct layout_tracke
 		.filter = from->filter,
 	};
 
+	(void)layout;
+	(void)diag;
 	return track_polhemus_create(out, &params, &gr_clock_monotonic);
 }
 
-static int create_dtrack(struct track_device **out, const struct layout_tracker *tracker)
+static int create_dtrack(struct track_device **out, const struct layout *layout,
+			 const struct layout_tracker *tracker, struct gr_diag *diag)
 {
 	const struct layout_dtrack *from = &tracker->dtrack;
 	const struct track_dtrack_params params = {
@@ -53,10 +60,13 @@ static int create_dtrack(struct track_device **out, const struct layout_tracker 
 			   .stick_y_down = from->stick_y_plus == LAYOUT_STICK_DOWN },
 	};
 
+	(void)layout;
+	(void)diag;
 	return track_dtrack_create(out, &params, &gr_clock_monotonic);
 }
 
-static int create_vrpn(struct track_device **out, const struct layout_tracker *tracker)
+static int create_vrpn(struct track_device **out, const struct layout *layout,
+		       const struct layout_tracker *tracker, struct gr_diag *diag)
 {
 	const struct track_vrpn_params params = {
 		.device = tracker->vrpn.device,
@@ -65,31 +75,37 @@ static int create_vrpn(struct track_device **out, const struct layout_tracker *t
 		.udp = tracker->vrpn.transport == LAYOUT_UDP,
 	};
 
+	(void)layout;
+	(void)diag;
 	return track_vrpn_create(out, &params, &gr_clock_monotonic);
 }
 
 /* Indexed by kind. */
-static int (*const create[])(struct track_device **, const struct layout_tracker *) = {
+static tracker_create *const create[] = {
 	[LAYOUT_TRACKER_HYDRA] = create_hydra,
 	[LAYOUT_TRACKER_VIPER] = create_polhemus,
 	[LAYOUT_TRACKER_LIBERTY] = create_polhemus,
 	[LAYOUT_TRACKER_PATRIOT] = create_polhemus,
 	[LAYOUT_TRACKER_DTRACK] = create_dtrack,
 	[LAYOUT_TRACKER_VRPN] = create_vrpn,
+	[LAYOUT_TRACKER_GAMEPAD] = tracker_create_gamepad,
+	[LAYOUT_TRACKER_DUALSHOCK4] = tracker_create_sony,
+	[LAYOUT_TRACKER_DUALSENSE] = tracker_create_sony,
+	[LAYOUT_TRACKER_SPACEMOUSE] = tracker_create_spacemouse,
 };
 
 int tracker_device_create(struct track_device **out, const struct layout *layout,
 			  const struct layout_tracker *tracker, struct gr_diag *diag)
 {
-	int r = create[tracker->kind](out, tracker);
+	int r = create[tracker->kind](out, layout, tracker, diag);
 
-	if (r < 0)
+	if (r < 0 && r != GR_ERR_CONFIG) /* which is said already */
 		gr_diag_add(diag, GR_DIAG_ERROR, layout->path, tracker->line, tracker->name,
 			    "cannot be made ready: %s", gr_result_name(r));
 	return r;
 }
 
-static void list(char *text, size_t size, const char *const *names)
+void tracker_list_names(char *text, size_t size, const char *const *names)
 {
 	size_t len = 0;
 
@@ -122,7 +138,7 @@ static int bind_one(struct track_binding *out, const struct layout *layout,
 		.latency_ns = tracker->latency_ns,
 	};
 	if (sensor < 0) {
-		list(known, sizeof known, ops->sensors);
+		tracker_list_names(known, sizeof known, ops->sensors);
 		gr_diag_add(diag, GR_DIAG_ERROR, layout->path, from->line, "sensor",
 			    "\"%s\" is no sensor of a %s; it has %s", from->sensor, ops->kind,
 			    known);

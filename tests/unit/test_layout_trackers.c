@@ -233,6 +233,82 @@ static void faults_of_a_polhemus_are_named(void **state)
 	}
 }
 
+static const char pads[] =
+	"trackers = ( { name = \"one\"; kind = \"gamepad\"; serial = \"S1\";\n"
+	"	pad = { vendor = 0x046d; product = 0xc216; path = \"1-2.4\"; triggers = \"z rz\"; dead_zone = 0.2; };\n"
+	"	bind = ( { body = \"wand\"; position = false; orientation = false; } ); },\n"
+	"	{ name = \"two\"; kind = \"dualsense\"; pad = { recentre = \"options\"; };\n"
+	"	bind = ( { body = \"wand\"; position = false; input = false; } ); },\n"
+	"	{ name = \"three\"; kind = \"spacemouse\"; spacemouse = { speed_m_s = 2.0; turn_deg_s = 90.0;\n"
+	"	  reach_m = 5.0; home = \"2\"; path = \"1-1\"; }; bind = ( { body = \"head\"; } ); } );\n";
+
+static void pads_have_groups_of_their_own(void **state)
+{
+	struct gr_diag diag = { 0 };
+	struct layout *layout = parse(pads, &diag), *again = NULL;
+	char *text = NULL;
+	size_t len = 0;
+	FILE *file = open_memstream(&text, &len);
+
+	(void)state;
+	unit_diag_print(&diag);
+	assert_non_null(layout);
+	assert_int_equal(layout_write(file, layout), GR_OK);
+	fclose(file);
+	assert_int_equal(layout_text_parse(text, &again, &diag), GR_OK);
+	unit_diag_print(&diag);
+	assert_int_equal(diag.count, 0);
+	for (int i = 0; i < 2; i++) {
+		const struct layout_tracker *t = i ? again->trackers : layout->trackers;
+
+		assert_int_equal(t[0].pad.vendor, 0x046d);
+		assert_int_equal(t[0].pad.product, 0xc216);
+		assert_string_equal(t[0].pad.path, "1-2.4");
+		assert_string_equal(t[0].pad.triggers, "z rz");
+		assert_float_equal(t[0].pad.dead_zone, 0.2, 1e-6);
+		assert_string_equal(t[0].pad.recentre, "");
+		assert_string_equal(t[1].pad.recentre, "options");
+		assert_float_equal(t[1].pad.dead_zone, 0.08, 1e-6);
+		assert_null(t[1].pad.path);
+		assert_float_equal(t[2].spacemouse.speed_m_s, 2, 1e-6);
+		assert_float_equal(t[2].spacemouse.turn_rad_s, 1.5707963, 1e-6);
+		assert_float_equal(t[2].spacemouse.reach_m, 5, 1e-6);
+		assert_string_equal(t[2].spacemouse.home, "2");
+		assert_string_equal(t[2].spacemouse.path, "1-1");
+	}
+	layout_destroy(&layout);
+	layout_destroy(&again);
+	gr_diag_finish(&diag);
+	free(text);
+}
+
+static const struct layout_fault pad_faults[] = {
+	{ "vendor = 0x046d; ", "", "product", "trackers[0].pad.product",
+	  "of which vendor is not said; give vendor, too", 1 },
+	{ "0.2; }", "0.2; recentre = \"1\"; }", "recentre", "trackers[0].pad.recentre",
+	  "not used: only kind = \"dualshock4\" and \"dualsense\" know how they are turned", 0 },
+	{ "recentre = \"options\"", "vendor = 1", "vendor = 1", "trackers[1].pad.vendor",
+	  "not used: only kind = \"gamepad\" is chosen by vendor", 0 },
+	{ "recentre = \"options\"", "triggers = \"x\"", "triggers = \"x\"", "trackers[1].pad.triggers",
+	  "not used: only of kind = \"gamepad\" it is not known", 0 },
+	{ "\"gamepad\"; serial = \"S1\";", "\"hydra\"; ", "pad = { vendor", "trackers[0].pad",
+	  "not used: only kind = \"gamepad\", \"dualshock4\" and \"dualsense\" are pads", 0 },
+	{ "kind = \"spacemouse\"", "kind = \"hydra\"", "name = \"three\"", "trackers[2].spacemouse",
+	  "not used: only kind = \"spacemouse\" is one", 0 },
+	{ "0.2; }", "1.0; }", "1.0; }", "trackers[0].pad.dead_zone", "1 is outside 0 to 0.9", 1 },
+	{ "0xc216", "65536", "65536", "trackers[0].pad.product", "65536 is outside 0 to 65535", 1 },
+};
+
+static void faults_of_pads_are_named(void **state)
+{
+	unsigned bad = 0;
+
+	(void)state;
+	for (size_t i = 0; i < sizeof pad_faults / sizeof *pad_faults; i++)
+		bad += layout_text_check_fault(&pad_faults[i], layout_text, pads);
+	assert_int_equal(bad, 0);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -242,6 +318,8 @@ int main(void)
 		cmocka_unit_test(a_device_needs_bindings),
 		cmocka_unit_test(a_polhemus_has_a_group_of_its_own),
 		cmocka_unit_test(faults_of_a_polhemus_are_named),
+		cmocka_unit_test(pads_have_groups_of_their_own),
+		cmocka_unit_test(faults_of_pads_are_named),
 	};
 
 	return cmocka_run_group_tests_name("layout_trackers", tests, NULL, NULL);

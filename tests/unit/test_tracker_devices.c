@@ -3,8 +3,10 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "daemon/tracker_devices.h"
 #include "daemon/trackers.h"
 #include "tests/unit/fake_device.h"
+#include "tests/unit/unit_config.h"
 
 #define MS GR_NS_PER_MS
 #define ZERO_NS (1000 * GR_NS_PER_S) /* CLOCK_MONOTONIC at the master's time 0 */
@@ -300,6 +302,43 @@ static void a_master_that_was_away(void **state)
 	assert_true(f->input.head.T_room_body.p[0] > 2.99f);
 }
 
+/* What a layout says of a pad's buttons and axes by name is known before anything is opened. */
+static void names_that_a_pad_does_not_have(void **state)
+{
+	static const struct {
+		enum layout_tracker_kind kind;
+		const char *triggers, *button;
+		const char *message; /* NULL: nothing is wrong */
+	} cases[] = {
+		{ LAYOUT_TRACKER_GAMEPAD, " rx  slider", "", NULL },
+		{ LAYOUT_TRACKER_GAMEPAD, "rx l2", "",
+		  "\"l2\" is no axis of it; it has x, y, z, rx, ry, rz, slider, slider2" },
+		{ LAYOUT_TRACKER_DUALSHOCK4, NULL, "share", NULL },
+		{ LAYOUT_TRACKER_DUALSENSE, NULL, "create", "\"create\" is no button of it; it has cross, circle" },
+		{ LAYOUT_TRACKER_SPACEMOUSE, NULL, "31", NULL },
+		{ LAYOUT_TRACKER_SPACEMOUSE, NULL, "32", "\"32\" is no button of it; it has 1, 2, 3" },
+	};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		struct layout_tracker tracker = { .name = "pad", .kind = cases[i].kind, .line = 7 };
+		const struct layout layout = { .path = (char *)"t.cave",
+					       .trackers = &tracker,
+					       .tracker_count = 1 };
+		struct gr_diag diag = { 0 };
+
+		tracker.pad.triggers = (char *)cases[i].triggers;
+		strcpy(tracker.pad.recentre, cases[i].button);
+		strcpy(tracker.spacemouse.home, cases[i].button);
+		tracker_devices_check(&layout, &diag);
+		unit_diag_print(&diag);
+		assert_int_equal(diag.errors, cases[i].message != NULL);
+		if (cases[i].message)
+			assert_true(unit_diag_has(&diag, GR_DIAG_ERROR, "t.cave:7", cases[i].message));
+		gr_diag_finish(&diag);
+	}
+}
+
 int main(void)
 {
 #define WITH(test) cmocka_unit_test_setup_teardown(test, setup, teardown)
@@ -312,6 +351,7 @@ int main(void)
 		WITH(rate_and_evenness),
 		WITH(what_is_said_of_it),
 		WITH(a_master_that_was_away),
+		cmocka_unit_test(names_that_a_pad_does_not_have),
 	};
 
 	gr_log_init("test", GR_LOG_ERROR);
