@@ -11,13 +11,18 @@ export ASAN_OPTIONS="detect_leaks=0:abort_on_error=0${ASAN_OPTIONS:+:$ASAN_OPTIO
 unset NOTIFY_SOCKET WATCHDOG_USEC 2>/dev/null
 
 dir=$(mktemp -d "${TMPDIR:-/tmp}/grotto-loopback-XXXXXX") || exit 1
-port=$((20000 + ($$ % 1000) * 8))
+# Eight ports that no other test has: a lock, which ends with the last of our processes.
+slot=$(($$ % 1000))
+ports() { echo "${TMPDIR:-/tmp}/grotto-ports-$(id -u)-$slot"; }
+while exec 9> "$(ports)" && ! flock -n 9; do slot=$(((slot + 1) % 1000)); done
+port=$((20000 + slot * 8))
 nodes="front left right floor"
 pids=
 
 finish() {
 	for pid in $pids; do kill -9 "$pid" 2>/dev/null; done
 	wait 2>/dev/null
+	rm -f "$(ports)"
 	if [ "$1" -eq 0 ] || [ "$1" -eq 77 ]; then rm -rf "$dir"; else echo "# left behind: $dir"; fi
 }
 trap 'status=$?; trap - EXIT; finish $status; exit $status' EXIT
