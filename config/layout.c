@@ -37,6 +37,8 @@ static void build_walls(struct layout *layout, struct layout_file *file)
 			*node = from->nodes[n].node;
 			node->address = take(&from->nodes[n].node.address);
 			node->display = take(&from->nodes[n].node.display);
+			node->projector = from->nodes[n].projector.projector;
+			node->projector.table = take(&from->nodes[n].projector.projector.table);
 			node->wall = w;
 			node->line = (int)config_setting_source_line(from->nodes[n].at);
 		}
@@ -164,6 +166,7 @@ void layout_destroy(struct layout **layout)
 	for (size_t i = 0; i < l->node_count; i++) {
 		free(l->nodes[i].address);
 		free(l->nodes[i].display);
+		free(l->nodes[i].projector.table);
 	}
 	for (size_t i = 0; i < l->standby_count; i++)
 		free(l->standby[i].address);
@@ -218,9 +221,14 @@ void layout_node_pixels(const struct layout *layout, size_t node, int pixels[2])
 				  lround((double)part[i] * wall->pixels[i]));
 }
 
+char *layout_beside(const struct layout *layout, const char *name)
+{
+	return config_text_beside(layout->path, name);
+}
+
 char *layout_key_path(const struct layout *layout)
 {
 	if (!layout->network.key_file)
 		return NULL;
-	return config_text_beside(layout->path, layout->network.key_file);
+	return layout_beside(layout, layout->network.key_file);
 }

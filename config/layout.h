@@ -62,6 +62,18 @@ struct layout_wall {
 	int line;                                 /* in the file */
 };
 
+/* Of a picture's values on their way to the display. */
+enum layout_depth { LAYOUT_DEPTH_8, LAYOUT_DEPTH_10, LAYOUT_DEPTH_FLOAT };
+
+/* What a node's projector makes of them, measured; renderer/tone/projector.h says how. */
+struct layout_projector {
+	vec3 black, gain; /* light of code 0 and of code 1; 1 is the room's white */
+	vec3 gamma;       /* NaN: the scene's */
+	char *table;      /* instead of the three; NULL, absolute, or beside the layout file */
+	enum layout_depth depth;
+	bool dither;
+};
+
 /* One render node: draws `part` of one wall. */
 struct layout_node {
 	char name[LAYOUT_NAME_MAX]; /* unique; the instance of grotto-node@NAME */
@@ -74,6 +86,7 @@ struct layout_node {
 	char *display; /* X display for a window, NULL for the environment's */
 	int monitor;   /* for fullscreen */
 	int gpu;       /* EGL device index, -1 for the first that works */
+	struct layout_projector projector;
 	int line;
 };
 
@@ -355,7 +368,9 @@ int layout_find_node(const struct layout *layout, const char *name);
 void layout_node_corners(const struct layout *layout, size_t node, vec3 lower_left,
 			 vec3 lower_right, vec3 upper_left);
 void layout_node_pixels(const struct layout *layout, size_t node, int pixels[2]);
-/* key_file as a path that can be opened; NULL when there is none. Caller frees. */
+/* A file that the layout names as a path that can be opened. Caller frees. */
+char *layout_beside(const struct layout *layout, const char *name);
+/* The same of key_file; NULL when there is none. */
 char *layout_key_path(const struct layout *layout);
 
 /*

@@ -62,6 +62,27 @@ static void check_part(struct options_reader *reader, const struct layout_file_w
 	}
 }
 
+static void check_projector(struct options_reader *reader, const struct layout_file_node *entry)
+{
+	static const char *const unused[] = { "black", "gain", "gamma" };
+	const struct layout_projector *p = &entry->projector.projector;
+	const config_setting_t *at = entry->projector.at;
+
+	for (int i = 0; i < 3; i++) {
+		if (p->table && options_given(at, unused[i]))
+			options_fault(reader, GR_DIAG_WARNING, at, unused[i], "not used: the table says it");
+		if (p->gain[i] <= p->black[i]) {
+			options_fault(reader, GR_DIAG_ERROR, at, "gain",
+				      "%g is no more than black, which is %g; it is the light at the brightest",
+				      (double)p->gain[i], (double)p->black[i]);
+			break;
+		}
+	}
+	if (p->depth == LAYOUT_DEPTH_FLOAT && entry->node.target != LAYOUT_TARGET_HEADLESS)
+		options_fault(reader, GR_DIAG_ERROR, at, "depth",
+			      "\"float\" is for target = \"headless\"; a display takes \"8\" or \"10\"");
+}
+
 static bool parts_overlap(const float a[4], const float b[4])
 {
 	for (int i = 0; i < 2; i++)
@@ -121,6 +142,7 @@ static void check_wall_nodes(struct options_reader *reader, struct layout_file_w
 			memcpy(entry->node.name, wall->name, sizeof entry->node.name);
 		resolve_eyes(reader, wall, entry);
 		check_part(reader, wall, entry);
+		check_projector(reader, entry);
 	}
 	if (!wall->node_count && options_given(wall->at, "nodes"))
 		options_fault(reader, GR_DIAG_ERROR, wall->at, "nodes",

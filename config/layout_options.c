@@ -6,6 +6,7 @@ static const char *const node_eyes_choices[] = { "mono", "quad-buffer", "side-by
 						 "top-bottom", NULL };
 static const char *const eye_choices[] = { "left", "right", NULL };
 static const char *const target_choices[] = { "headless", "window", "fullscreen", NULL };
+static const char *const depth_choices[] = { "8", "10", "float", NULL };
 static const char *const cast_choices[] = { "unicast", "multicast", "broadcast", "auto", NULL };
 static const char *const parity_choices[] = { "auto", "off", "on", NULL };
 static const char *const swap_choices[] = { "auto", "message", "scheduled", "hardware", NULL };
@@ -13,6 +14,27 @@ static const char *const orphan_choices[] = { "hold", "black", "test", NULL };
 static const char *const slow_choices[] = { "evict", "wait", "half", NULL };
 
 #define AT(type, member) .offset = offsetof(struct type, member)
+
+#define AT_PROJECTOR(member) AT(layout_file_projector, projector.member)
+
+static const struct option projector_options[] = {
+	{ .key = "depth", .type = OPTION_CHOICE, .choices = depth_choices, .standard = "8",
+	  AT_PROJECTOR(depth),
+	  .help = "bits of each band on the way to the display; float only with target = \"headless\"" },
+	{ .key = "dither", .type = OPTION_BOOL, .standard = "false", AT_PROJECTOR(dither),
+	  .help = "a fixed pattern of half a step breaks the bands that few bits make in dark slopes" },
+	{ .key = "black", .type = OPTION_FLOAT, .count = 3, .min = 0, .max = 1,
+	  .standard = "0 0 0", AT_PROJECTOR(black),
+	  .help = "measured light at its darkest in red, green and blue; 1 is the white that all walls of the room reach" },
+	{ .key = "gain", .type = OPTION_FLOAT, .count = 3, .min = 0.01, .max = 100,
+	  .standard = "1 1 1", AT_PROJECTOR(gain), .help = "measured light at its brightest, likewise" },
+	{ .key = "gamma", .type = OPTION_FLOAT, .count = 3, .min = 0.5, .max = 5,
+	  AT_PROJECTOR(gamma),
+	  .help = "measured exponent between the two; without it the scene's tone.gamma_display" },
+	{ .key = "table", .type = OPTION_STRING, AT_PROJECTOR(table),
+	  .help = "instead of the three: a text file with rows of code (0 to 1) and measured light in red, green and blue" },
+	{ .key = NULL },
+};
 
 static const struct option node_options[] = {
 	{ .key = "name", .type = OPTION_NAME, AT(layout_file_node, node.name),
@@ -40,6 +62,8 @@ static const struct option node_options[] = {
 	{ .key = "gpu", .type = OPTION_INT, .min = -1, .max = 63, .standard = "-1",
 	  AT(layout_file_node, node.gpu),
 	  .help = "EGL device to draw on; -1 takes the first that works" },
+	{ .key = "projector", .type = OPTION_GROUP, AT(layout_file_node, projector),
+	  .group = projector_options, .help = "what the display makes of the picture, so that walls match" },
 	{ .key = NULL },
 };
 

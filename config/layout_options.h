@@ -15,9 +15,15 @@
 /* Values of `eyes` of a wall or node: enum layout_eyes up to this one. */
 #define LAYOUT_FILE_EYE_PER_NODE LAYOUT_EYES_LEFT
 
+struct layout_file_projector {
+	const config_setting_t *at;
+	struct layout_projector projector;
+};
+
 struct layout_file_node {
 	const config_setting_t *at;
-	struct layout_node node;
+	struct layout_node node; /* but for its projector */
+	struct layout_file_projector projector;
 	int eyes, eye; /* as given, OPTION_ABSENT when not */
 };
 

@@ -30,6 +30,10 @@ static void fill_wall(const struct layout *layout, size_t index, struct layout_f
 		if (node->wall != index)
 			continue;
 		entry->node = *node;
+		entry->projector.projector = node->projector;
+		if (node->projector.table) /* the reader would warn about what it does not use */
+			entry->projector.projector.black[0] = entry->projector.projector.gain[0] =
+				entry->projector.projector.gamma[0] = NAN;
 		entry->eye = one_eye ? node->eyes == LAYOUT_EYES_RIGHT : OPTION_ABSENT;
 		entry->eyes = one_eye ? OPTION_ABSENT : (int)node->eyes;
 		if (one_eye)

@@ -27,6 +27,7 @@ config_libgconfig_a_SOURCES = \
 	config/options_write.c \
 	config/scene_check.c \
 	config/scene_file.c config/scene_file.h \
+	config/scene_sky.c config/scene_sky.h \
 	config/scene_options.c config/scene_options.h \
 	config/scene_write.c \
 	config/suggest.c config/suggest.h

@@ -1,4 +1,4 @@
-#include "config/scene_options.h"
+#include "config/scene_sky.h"
 
 #include <math.h>
 #include <string.h>
@@ -204,10 +204,17 @@ static void check_environment(struct options_reader *reader, struct scene_form_e
 		if (!e->file || !*e->file)
 			options_fault(reader, GR_DIAG_ERROR, form->at, "file",
 				      "missing; name the picture of the environment");
+		else if (e->projection == SCENE_PROJECTION_FACES &&
+			 (!strchr(e->file, '*') || strchr(e->file, '*') != strrchr(e->file, '*')))
+			options_fault(reader, GR_DIAG_ERROR, form->at, "file",
+				      "\"%s\" has not one *, which stands for px, nx, py, ny, pz and nz: "
+				      "\"sky_*.hdr\"", e->file);
 	} else {
 		unused(reader, form->at, "file", "only kind = \"image\" has a picture");
+		unused(reader, form->at, "projection", "only kind = \"image\" has a picture");
 		unused(reader, form->at, "scale", "only kind = \"image\" has a picture");
-		unused(reader, form->at, "heading_deg", "only kind = \"image\" has a picture");
+		if (e->kind != SCENE_ENVIRONMENT_SKY)
+			unused(reader, form->at, "heading_deg", "only a picture or a sky can be turned");
 	}
 	if (e->kind != SCENE_ENVIRONMENT_CONSTANT)
 		unused(reader, form->at, "radiance", "only for kind = \"constant\"");
@@ -238,6 +245,7 @@ void scene_check(struct options_reader *reader, struct scene_form *form)
 	check_tone(reader, &form->tone);
 	check_surfaces(reader, form);
 	check_environment(reader, &form->environment);
+	scene_sky_check(reader, form);
 	check_gi(reader, form);
 	if (form->near_m >= form->far_m)
 		options_fault(reader, GR_DIAG_ERROR, form->at, "far_m",

@@ -3,7 +3,7 @@
 #include "base/result.h"
 #include "config/canonical.h"
 #include "config/config_text.h"
-#include "config/scene_options.h"
+#include "config/scene_sky.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@ static struct scene_file *build(struct scene_form *form, const char *path)
 	if (!file)
 		return NULL;
 	file->path = strdup(path);
-	file->lamps = calloc(form->lamp_count + 1, sizeof *file->lamps);
+	file->lamps = calloc(form->lamp_count + 2, sizeof *file->lamps);
 	file->cameras = calloc(form->camera_count + 1, sizeof *file->cameras);
 	file->surfaces = calloc(form->surface_count + 1, sizeof *file->surfaces);
 	if (!file->path || !file->lamps || !file->cameras || !file->surfaces) {
@@ -49,7 +49,10 @@ static struct scene_file *build(struct scene_form *form, const char *path)
 		from->surface.material = from->surface.file = NULL;
 	}
 	file->environment = form->environment.environment;
-	form->environment.environment.file = NULL;
+	form->environment.environment.file = form->environment.environment.time = NULL;
+	/* last, so that the file's lamps keep their numbers */
+	if (scene_sky_sun(&file->environment, &file->lamps[file->lamp_count]))
+		file->lamp_count++;
 	file->gi = form->gi.lpv.gi;
 	file->gi.spacing_m = form->gi.surfels.gi.spacing_m;
 	file->gi.links = form->gi.surfels.gi.links;
@@ -131,6 +134,7 @@ void scene_file_destroy(struct scene_file **file)
 	}
 	free(f->surfaces);
 	free(f->environment.file);
+	free(f->environment.time);
 	free(f);
 	*file = NULL;
 }
@@ -215,6 +219,15 @@ static void hash_environment(struct canonical *c, const struct scene_environment
 	}
 	if (e->kind != SCENE_ENVIRONMENT_NONE)
 		canonical_u64(c, e->upper_only);
+	if (e->kind == SCENE_ENVIRONMENT_SKY) {
+		canonical_floats(c, &e->heading_rad, 1);
+		canonical_floats(c, &e->turbidity, 1);
+		canonical_u64(c, e->sun);
+		canonical_u64(c, e->time != NULL);
+		canonical_floats(c, e->time ? e->place : &e->sun_elevation_rad, e->time ? 2 : 1);
+		canonical_floats(c, &e->sun_azimuth_rad, e->time ? 0 : 1);
+		canonical_u64(c, (uint64_t)e->time_s);
+	}
 }
 
 static void hash_gi(struct canonical *c, const struct scene_gi *gi)
@@ -240,6 +253,10 @@ static void hash_tone(struct canonical *c, const struct scene_tone *tone)
 {
 	canonical_u64(c, tone->curve);
 	canonical_floats(c, &tone->exposure, 1);
+	/* The curve may be changed while the room runs, so what the others take counts, too. */
+	canonical_floats(c, &tone->adaptation, 1);
+	canonical_floats(c, &tone->luminance_max, 1);
+	canonical_floats(c, &tone->bias, 1);
 	canonical_u64(c, tone->srgb);
 	if (!tone->srgb) {
 		canonical_floats(c, &tone->gamma_display, 1);
@@ -250,7 +267,7 @@ static void hash_tone(struct canonical *c, const struct scene_tone *tone)
 size_t scene_file_items(const struct scene_file *file, struct gr_item *items, size_t room,
 			uint8_t hash[32])
 {
-	struct canonical_items c = canonical_items_start("grotto scene 3", items, room);
+	struct canonical_items c = canonical_items_start("grotto scene 4", items, room);
 	struct canonical *part;
 
 	canonical_floats(canonical_item(&c, "model_scale"), &file->model_scale, 1);
@@ -264,7 +281,8 @@ size_t scene_file_items(const struct scene_file *file, struct gr_item *items, si
 	part = canonical_item(&c, "lamps");
 	canonical_u64(part, file->lamp_count);
 	for (size_t i = 0; i < file->lamp_count; i++)
-		hash_lamp(part, &file->lamps[i]);
+		if (!file->lamps[i].of_sky) /* computed: what it comes from counts */
+			hash_lamp(part, &file->lamps[i]);
 	part = canonical_item(&c, "materials");
 	canonical_u64(part, file->surface_count);
 	for (size_t i = 0; i < file->surface_count; i++)

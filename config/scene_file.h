@@ -46,6 +46,7 @@ struct scene_lamp {
 	float radius_m;      /* spot, point: of the source, for the soft edge of its shadows */
 	float angle_rad;     /* directional: full angle of the source, likewise; 0..pi/2 */
 	bool on;
+	bool of_sky; /* the sun of the environment: not among the file's lamps */
 	vec3 orbit_center;
 	float orbit_radius_m, orbit_period_s;
 	int line;
@@ -86,14 +87,30 @@ struct scene_surface {
 };
 
 /* What lights the scene from all around, and is seen where no surface is. */
-enum scene_environment_kind { SCENE_ENVIRONMENT_NONE, SCENE_ENVIRONMENT_CONSTANT, SCENE_ENVIRONMENT_IMAGE };
+enum scene_environment_kind {
+	SCENE_ENVIRONMENT_NONE,
+	SCENE_ENVIRONMENT_CONSTANT,
+	SCENE_ENVIRONMENT_IMAGE,
+	SCENE_ENVIRONMENT_SKY,
+};
+/* How a picture shows all directions; renderer/scene/environment_cube.h has the last two. */
+enum scene_projection { SCENE_PROJECTION_LATLONG, SCENE_PROJECTION_CROSS, SCENE_PROJECTION_FACES };
 struct scene_environment {
 	enum scene_environment_kind kind;
 	vec3 radiance;     /* constant: W/(m^2 sr) */
-	char *file;        /* image: OpenEXR, latitude-longitude (renderer/scene/environment.h) */
+	char *file;        /* image: OpenEXR or Radiance; of faces six, the name with a * */
+	enum scene_projection projection;
 	float scale;       /* image: W/(m^2 sr) of a pixel that is 1 */
-	float heading_rad; /* image: turned about +Y */
-	bool upper_only;   /* nothing comes from directions with y <= 0 */
+	float heading_rad; /* image: turned about +Y; sky: where north is, 0 -Z, a quarter turn -X */
+	bool upper_only;   /* nothing comes from directions with y <= 0; always so of a sky */
+	/* sky: Preetham 1999, renderer/scene/sky.h */
+	float turbidity;
+	bool sun;                                 /* is a lamp of the file, with of_sky */
+	float sun_elevation_rad, sun_azimuth_rad; /* from north over east; unless there is a time */
+	float place[2];                           /* latitude north, longitude east, radians */
+	char *time;                               /* ISO 8601; NULL: by angles */
+	int64_t time_s;                           /* the same since 1970 UTC */
+	vec3 to_sun;                              /* scene, unit, from all that */
 };
 
 enum scene_gi_method { SCENE_GI_NONE, SCENE_GI_LPV, SCENE_GI_SURFELS, SCENE_GI_PROBES, SCENE_GI_AUTO };
@@ -120,12 +137,17 @@ struct scene_gi {
 	int probes;           /* cells of the probe grid along the longest side of the scene: 1..64 */
 };
 
-enum scene_curve { SCENE_CURVE_LINEAR, SCENE_CURVE_REINHARD };
+/* In the order of the parameter TONE_CURVE. */
+enum scene_curve { SCENE_CURVE_LINEAR, SCENE_CURVE_REINHARD, SCENE_CURVE_DRAGO, SCENE_CURVE_PATTANAIK };
+#define SCENE_CURVES 4
 
-/* Tone curve (thesis eq. 3.3) and encoding gamma (thesis table 3.1). */
+/* Tone curve (renderer/tone/curve.h) and encoding gamma (thesis table 3.1). */
 struct scene_tone {
 	enum scene_curve curve;
 	float exposure;       /* factor on radiance before the curve */
+	float adaptation;     /* drago, pattanaik: what the eye is used to, cd/m^2 */
+	float luminance_max;  /* drago: what becomes white, cd/m^2 */
+	float bias;           /* drago: 0.5..0.9 */
 	float gamma_display;  /* of the display, 2.2 */
 	float gamma_end_to_end; /* dark 1.5, dim 1.25, light 1.125 */
 	bool srgb;            /* encode with the sRGB curve instead of the power law */

@@ -8,9 +8,10 @@ static const char *const method_choices[] = { "none", "lpv", "surfels", "probes"
 static const char *const share_choices[] = { "local", "cluster", NULL };
 static const char *const surface_choices[] = { "diffuse", "phong", "mirror", "conductor", "measured", "model", NULL };
 static const char *const sides_choices[] = { "model", "one", "two", NULL };
-static const char *const environment_choices[] = { "none", "constant", "image", NULL };
+static const char *const environment_choices[] = { "none", "constant", "image", "sky", NULL };
+static const char *const projection_choices[] = { "latlong", "cross", "faces", NULL };
 static const char *const mode_choices[] = { "repaired", "thesis", NULL };
-static const char *const curve_choices[] = { "linear", "reinhard", NULL };
+static const char *const curve_choices[] = { "linear", "reinhard", "drago", "pattanaik", NULL };
 static const char *const ambient_choices[] = { "dark", "dim", "light", NULL };
 
 /* A dark room darkens what is seen in it: the brighter the room, the smaller the exponent. */
@@ -174,17 +175,35 @@ static const struct option surface_options[] = {
 
 static const struct option environment_options[] = {
 	{ .key = "kind", .type = OPTION_CHOICE, .choices = environment_choices, .standard = "none",
-	  AT_ENVIRONMENT(kind), .help = "nothing, the same from everywhere, or a picture" },
+	  AT_ENVIRONMENT(kind), .help = "nothing, the same from everywhere, a picture, or a sky by its haze and sun" },
 	{ .key = "radiance", .type = OPTION_FLOAT, .count = 3, .min = 0, .max = 1e9,
 	  .unit = "W/(m2 sr)", .standard = "0 0 0", AT_ENVIRONMENT(radiance),
 	  .help = "constant: what comes from every direction" },
 	{ .key = "file", .type = OPTION_STRING, AT_ENVIRONMENT(file),
-	  .help = "image: OpenEXR, latitude-longitude: the middle is +X, three quarters along +Z, the top row +Y" },
+	  .help = "image: OpenEXR or Radiance (.hdr); of projection = \"faces\" six, of which * stands for px, nx, py, ny, pz, nz" },
+	{ .key = "projection", .type = OPTION_CHOICE, .choices = projection_choices,
+	  .standard = "latlong", AT_ENVIRONMENT(projection),
+	  .help = "image: latitude-longitude (the middle is +X, three quarters along +Z, the top row +Y), or a cube in one picture or in six" },
 	{ .key = "scale", .type = OPTION_FLOAT, .min = 0, .max = 1e9, .standard = "1",
 	  AT_ENVIRONMENT(scale), .help = "image: radiance in W/(m2 sr) of a pixel that is 1" },
 	{ .key = "heading_deg", .type = OPTION_FLOAT, .min = -360, .max = 360, .unit = "deg",
 	  .scale = RAD_PER_DEG, .standard = "0", AT_ENVIRONMENT(heading_rad),
-	  .help = "image: turned about +Y, counter-clockwise from above" },
+	  .help = "image: turned about +Y, counter-clockwise from above; sky: where north is, 0 is -Z, 90 is -X" },
+	{ .key = "turbidity", .type = OPTION_FLOAT, .min = 1.7, .max = 10, .standard = "3",
+	  AT_ENVIRONMENT(turbidity), .help = "sky: haze; 2 very clear, 3 clear, 6 hazy, 10 nearly fog" },
+	{ .key = "sun_elevation_deg", .type = OPTION_FLOAT, .min = -90, .max = 90, .unit = "deg",
+	  .scale = RAD_PER_DEG, .standard = "45", AT_ENVIRONMENT(sun_elevation_rad),
+	  .help = "sky: the sun's height over the horizon" },
+	{ .key = "sun_azimuth_deg", .type = OPTION_FLOAT, .min = -360, .max = 360, .unit = "deg",
+	  .scale = RAD_PER_DEG, .standard = "180", AT_ENVIRONMENT(sun_azimuth_rad),
+	  .help = "sky: where it stands, from north over east" },
+	{ .key = "place", .type = OPTION_FLOAT, .count = 2, .min = -360, .max = 360, .unit = "deg",
+	  .scale = RAD_PER_DEG, AT_ENVIRONMENT(place),
+	  .help = "sky: latitude (north) and longitude (east), with time instead of the two angles" },
+	{ .key = "time", .type = OPTION_STRING, AT_ENVIRONMENT(time),
+	  .help = "sky: date and time there, such as \"2026-06-21T14:30+02:00\"" },
+	{ .key = "sun", .type = OPTION_BOOL, .standard = "true", AT_ENVIRONMENT(sun),
+	  .help = "sky: the sun shines, as a lamp of that name" },
 	{ .key = "upper_only", .type = OPTION_BOOL, .standard = "false", AT_ENVIRONMENT(upper_only),
 	  .help = "nothing comes from below the horizon" },
 	{ .key = NULL },
@@ -202,9 +221,18 @@ static const struct option medium_options[] = {
 
 static const struct option tone_options[] = {
 	{ .key = "curve", .type = OPTION_CHOICE, .choices = curve_choices, .standard = "reinhard",
-	  AT(scene_form_tone, tone.curve), .help = "no curve, or L/(1+L)" },
+	  AT(scene_form_tone, tone.curve), .help = "no curve; L/(1+L) per band; Drago 2003 (logarithmic); or Pattanaik 2000 (what an eye sees that is used to `adaptation`)" },
 	{ .key = "exposure", .type = OPTION_FLOAT, .min = 1e-9, .max = 1e9, .standard = "1",
 	  AT(scene_form_tone, tone.exposure), .help = "factor on radiance before the curve" },
+	{ .key = "adaptation", .type = OPTION_FLOAT, .min = 1e-6, .max = 1e9, .unit = "cd/m2",
+	  .standard = "100", AT(scene_form_tone, tone.adaptation),
+	  .help = "drago and pattanaik: the luminance that the eye is used to" },
+	{ .key = "luminance_max", .type = OPTION_FLOAT, .min = 1e-6, .max = 1e12, .unit = "cd/m2",
+	  .standard = "10000", AT(scene_form_tone, tone.luminance_max),
+	  .help = "drago: the luminance that becomes white" },
+	{ .key = "bias", .type = OPTION_FLOAT, .min = 0.5, .max = 0.9, .standard = "0.85",
+	  AT(scene_form_tone, tone.bias),
+	  .help = "drago: how soon what is bright is compressed; the larger, the darker the middle" },
 	{ .key = "ambient", .type = OPTION_CHOICE, .choices = ambient_choices,
 	  AT(scene_form_tone, ambient),
 	  .help = "light around the display, sets gamma_end_to_end: dark 1.5, dim 1.25 (without either key), light 1.125" },

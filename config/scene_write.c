@@ -26,8 +26,18 @@ static void fill_environment(const struct scene_environment *from, struct scene_
 	*to = *from;
 	if (from->kind != SCENE_ENVIRONMENT_CONSTANT)
 		to->radiance[0] = NAN;
-	if (from->kind != SCENE_ENVIRONMENT_IMAGE)
-		to->scale = to->heading_rad = NAN;
+	if (from->kind != SCENE_ENVIRONMENT_IMAGE) {
+		to->scale = NAN;
+		to->projection = (enum scene_projection)OPTION_ABSENT;
+	}
+	if (from->kind != SCENE_ENVIRONMENT_IMAGE && from->kind != SCENE_ENVIRONMENT_SKY)
+		to->heading_rad = NAN;
+	if (from->kind != SCENE_ENVIRONMENT_SKY)
+		to->turbidity = NAN;
+	if (from->kind != SCENE_ENVIRONMENT_SKY || from->time)
+		to->sun_elevation_rad = to->sun_azimuth_rad = NAN;
+	if (!from->time)
+		to->place[0] = NAN;
 }
 
 int scene_file_write(FILE *out, const struct scene_file *file)
@@ -51,9 +61,9 @@ int scene_file_write(FILE *out, const struct scene_file *file)
 	form.far_m = file->far_m;
 	form.shadow_pixels = file->shadow_pixels;
 	form.lamps = lamps;
-	form.lamp_count = file->lamp_count;
 	for (size_t i = 0; i < file->lamp_count; i++)
-		fill_lamp(&file->lamps[i], &lamps[i]);
+		if (!file->lamps[i].of_sky)
+			fill_lamp(&file->lamps[i], &lamps[form.lamp_count++]);
 	form.cameras = cameras;
 	form.camera_count = file->camera_count;
 	for (size_t i = 0; i < file->camera_count; i++)

@@ -259,6 +259,9 @@ static void write_settings(struct json *json, const struct master *m)
 	json_f64(json, "exposure", (double)s->exposure);
 	json_u64(json, "tone_curve", s->tone_curve);
 	json_f64(json, "gamma_encode", (double)s->gamma_encode);
+	json_f64(json, "adaptation", (double)s->adaptation);
+	json_f64(json, "luminance_max", (double)s->luminance_max);
+	json_f64(json, "tone_bias", (double)s->tone_bias);
 	json_f64(json, "eye_separation", (double)s->eye_separation);
 	json_open(json, "lamps", '{');
 	for (size_t i = 0; i < m->params.scene->lamp_count && i < PARAM_MAX_LAMPS; i++)

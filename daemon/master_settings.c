@@ -2,6 +2,7 @@
 
 #include "base/plain.h"
 #include "base/result.h"
+#include "renderer/tone/adapt.h"
 
 #include <errno.h>
 #include <math.h>
@@ -9,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Settings that are one number; range and unit are the parameter's. */
+/* Settings that are one number, the parameter's first; range and unit are the parameter's. */
 struct simple_setting {
 	const char *name;
 	enum param_id id;
@@ -27,6 +28,9 @@ static const struct simple_setting simple[] = {
 	{ "exposure", PARAM_EXPOSURE, false, AT(exposure) },
 	{ "tone_curve", PARAM_TONE_CURVE, true, AT(tone_curve) },
 	{ "gamma_encode", PARAM_GAMMA_ENCODE, false, AT(gamma_encode) },
+	{ "adaptation", PARAM_ADAPTATION, false, AT(adaptation) },
+	{ "luminance_max", PARAM_LUMINANCE_MAX, false, AT(luminance_max) },
+	{ "tone_bias", PARAM_TONE_BIAS, false, AT(tone_bias) },
 	{ "eye_separation", PARAM_EYE_SEPARATION, false, AT(eye_separation) },
 };
 #define SIMPLE_COUNT (sizeof simple / sizeof *simple)
@@ -37,13 +41,16 @@ void master_settings_init(struct master_settings *settings, const struct scene_f
 	*settings = (struct master_settings){
 		.gi_on = scene->gi.method != SCENE_GI_NONE,
 		.gi_steps = (uint32_t)scene->gi.steps,
-		.tone_curve = scene->tone.curve == SCENE_CURVE_REINHARD,
+		.tone_curve = scene->tone.curve,
 		.gi_incremental = scene->gi.incremental,
 		.absorption = scene->absorption_per_m,
 		.scattering = scene->scattering_per_m,
 		.exposure = scene->tone.exposure,
 		.gamma_encode = scene->tone.gamma_end_to_end / scene->tone.gamma_display,
 		.eye_separation = eye_separation_m,
+		.adaptation = scene->tone.adaptation,
+		.luminance_max = scene->tone.luminance_max,
+		.tone_bias = scene->tone.bias,
 	};
 	for (size_t i = 0; i < scene->lamp_count && i < PARAM_MAX_LAMPS; i++) {
 		if (scene->lamps[i].on)
@@ -174,6 +181,23 @@ void master_settings_read(struct master_settings *settings, const struct param_s
 	       sizeof settings->lamp_intensity);
 }
 
+/* An eye that has long been used to it, until something watches what is looked at. */
+static int apply_adaptation(float level, struct param_state *params, uint64_t frame)
+{
+	struct adapt_state eye;
+	float levels[2], pigment[2];
+
+	if (adapt_settle(&eye, (double)level) != GR_OK)
+		return GR_ERR_RANGE;
+	levels[0] = levels[1] = level;
+	pigment[0] = (float)eye.cone_pigment;
+	pigment[1] = (float)eye.rod_pigment;
+	if (param_set(params, PARAM_ADAPTATION, levels, frame) < 0 ||
+	    param_set(params, PARAM_PIGMENT, pigment, frame) < 0)
+		return GR_ERR_RANGE;
+	return GR_OK;
+}
+
 int master_settings_apply(const struct master_settings *settings, struct param_state *params,
 			  uint64_t frame, const char **refused)
 {
@@ -181,7 +205,11 @@ int master_settings_apply(const struct master_settings *settings, struct param_s
 
 	for (size_t i = 0; i < SIMPLE_COUNT; i++) {
 		const void *at = (const char *)settings + simple[i].offset;
-		if (param_set(params, simple[i].id, at, frame) < 0) {
+		int set = simple[i].id == PARAM_ADAPTATION ?
+				  apply_adaptation(settings->adaptation, params, frame) :
+				  param_set(params, simple[i].id, at, frame);
+
+		if (set < 0) {
 			*refused = simple[i].name;
 			r = GR_ERR_RANGE;
 		}

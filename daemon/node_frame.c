@@ -68,7 +68,11 @@ int node_frame_fill(struct render_frame *out, const struct scene_file *scene,
 	f.absorption_per_m = *param_f32(params, PARAM_ABSORPTION);
 	f.scattering_per_m = *param_f32(params, PARAM_SCATTERING);
 	f.exposure = *param_f32(params, PARAM_EXPOSURE);
-	f.curve = *param_u32(params, PARAM_TONE_CURVE) ? SCENE_CURVE_REINHARD : SCENE_CURVE_LINEAR;
+	f.curve = (enum scene_curve)*param_u32(params, PARAM_TONE_CURVE);
+	memcpy(f.adaptation, param_f32(params, PARAM_ADAPTATION), sizeof f.adaptation);
+	memcpy(f.pigment, param_f32(params, PARAM_PIGMENT), sizeof f.pigment);
+	f.luminance_max = *param_f32(params, PARAM_LUMINANCE_MAX);
+	f.tone_bias = *param_f32(params, PARAM_TONE_BIAS);
 	f.gamma_encode = *param_f32(params, PARAM_GAMMA_ENCODE);
 	*out = f;
 	return GR_OK;

@@ -14,6 +14,7 @@
 #include "daemon/priority.h"
 #include "daemon/privileges.h"
 #include "daemon/room_files.h"
+#include "renderer/tone/projector.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -30,6 +31,7 @@ struct opened {
 	struct loop *loop;
 	struct net *net;
 	struct target *target;
+	struct projector *projector; /* NULL: what the scene takes for one */
 	struct node_light light;
 	struct pictures *pictures;
 	struct node *node;
@@ -82,9 +84,43 @@ static void fill_renderer(struct renderer_params *params, const struct opened *o
 		.eyes = eyes_of(layout->nodes[o->index].eyes),
 		.wall_given = true,
 		.keep_radiance = options->pictures && options->exr,
+		.projector = o->projector,
+		.dither = layout->nodes[o->index].projector.dither,
 	};
 	layout_node_corners(layout, o->index, params->wall.lower_left, params->wall.lower_right,
 			    params->wall.upper_left);
+}
+
+/* What the layout says of this node's projector. */
+static int open_projector(struct opened *o)
+{
+	const struct layout *layout = o->files.layout;
+	struct gr_diag diag = { 0 };
+	int r;
+
+	o->projector = calloc(1, sizeof *o->projector);
+	if (!o->projector)
+		return GR_ERR_NOMEM;
+	r = projector_load(layout, &layout->nodes[o->index].projector, &o->files.scene_file->tone,
+			   o->projector, &diag);
+	gr_diag_log(&diag);
+	gr_diag_finish(&diag);
+	if (r == GR_NOTHING) {
+		free(o->projector);
+		o->projector = NULL;
+		return GR_OK;
+	}
+	if (r == GR_OK)
+		gr_notice("pictures are encoded for a projector that was measured");
+	return r;
+}
+
+/* --target may ask for a window where the layout has none. */
+static enum target_depth depth_of(const struct layout_node *node, enum target_kind kind)
+{
+	if (node->projector.depth == LAYOUT_DEPTH_FLOAT)
+		return kind == TARGET_HEADLESS ? TARGET_DEPTH_FLOAT : TARGET_DEPTH_10;
+	return node->projector.depth == LAYOUT_DEPTH_10 ? TARGET_DEPTH_10 : TARGET_DEPTH_8;
 }
 
 static enum target_kind kind_of(const struct layout_node *node, int choice)
@@ -118,11 +154,13 @@ static int open_target(struct opened *o, const struct node_options *options,
 	};
 	int r;
 
+	params.depth = depth_of(node, params.kind);
 	renderer_target_size(renderer, &params.width, &params.height);
 	r = target_create(&o->target, &params);
 	if (r >= 0)
-		gr_notice("draws with %s (%s), %d x %d pixels", target_renderer_name(o->target),
-			  target_platform_name(o->target), params.width, params.height);
+		gr_notice("draws with %s (%s), %d x %d pixels of %d bits", target_renderer_name(o->target),
+			  target_platform_name(o->target), params.width, params.height,
+			  target_bits(o->target));
 	return r;
 }
 
@@ -217,6 +255,9 @@ static int open_all(struct opened *o, const struct node_options *options)
 
 	if (r < 0)
 		return r;
+	r = open_projector(o);
+	if (r < 0)
+		return r;
 	fill_renderer(&renderer, o, options);
 	r = open_target(o, options, &renderer);
 	if (r >= 0)
@@ -307,6 +348,7 @@ static void close_all(struct opened *o)
 		close(o->swap_log);
 	node_light_close(&o->light);
 	target_destroy(&o->target);
+	free(o->projector);
 	net_close(&o->net);
 	room_files_finish(&o->files);
 	loop_destroy(&o->loop);

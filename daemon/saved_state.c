@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define VERSION 1
+#define VERSION 2
 #define SUM_BYTES 32
 #define SLACK_NS (60 * INT64_C(1000000000)) /* a clock that was set a little */
 
@@ -24,7 +24,8 @@ void saved_state_encode(const struct saved_state *state, uint8_t bytes[SAVED_STA
 {
 	const struct master_settings *s = &state->settings;
 	const float reals[] = { s->gi_incremental, s->absorption, s->scattering, s->exposure,
-				s->gamma_encode, s->eye_separation };
+				s->gamma_encode, s->eye_separation, s->adaptation,
+				s->luminance_max, s->tone_bias };
 	struct gr_writer w = gr_writer(bytes, SAVED_STATE_BYTES - SUM_BYTES);
 
 	gr_write_bytes(&w, magic, sizeof magic);
@@ -54,7 +55,8 @@ static void read_all(struct gr_reader *r, struct saved_state *out)
 {
 	struct master_settings *s = &out->settings;
 	float *const reals[] = { &s->gi_incremental, &s->absorption, &s->scattering, &s->exposure,
-				 &s->gamma_encode, &s->eye_separation };
+				 &s->gamma_encode, &s->eye_separation, &s->adaptation,
+				 &s->luminance_max, &s->tone_bias };
 
 	memcpy(out->layout_hash, gr_read_bytes(r, 32), 32);
 	memcpy(out->scene_hash, gr_read_bytes(r, 32), 32);

@@ -16,7 +16,7 @@
 
 /* Older than this, the file is of another visit. */
 #define SAVED_STATE_AGE_MOST_NS (600 * INT64_C(1000000000))
-#define SAVED_STATE_BYTES 392
+#define SAVED_STATE_BYTES 404
 #define SAVED_STATE_REASON 200
 
 struct saved_state {

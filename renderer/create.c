@@ -6,6 +6,7 @@
 #include "renderer/gi/surfel_store.h"
 #include "renderer/gi/surfels.h"
 #include "renderer/scene/environment.h"
+#include "renderer/tone/projector.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -127,6 +128,26 @@ static int create_light(struct renderer *r, const struct emissive_patches *patch
 	return result;
 }
 
+static int create_tone(struct renderer *r)
+{
+	const struct projector *projector = r->params.projector;
+	int bits = target_bits(r->target);
+	float (*map)[3] = NULL;
+	int result;
+
+	if (projector) {
+		map = calloc(PROJECTOR_MAP, sizeof *map);
+		if (!map)
+			return GR_ERR_NOMEM;
+		projector_map(projector, &r->file->tone, map);
+	}
+	result = tone_create(&r->tone, (const float (*)[3])map,
+			     r->params.dither && bits < 16 ? bits : 0);
+	free(map);
+	r->params.projector = NULL; /* the caller's, and in the map now */
+	return result;
+}
+
 static int create_pictures(struct renderer *r)
 {
 	const struct shade_parts parts = { r->shadow, r->emissive, r->gi, &r->backdrop };
@@ -145,7 +166,7 @@ static int create_pictures(struct renderer *r)
 						    r->params.height, r->params.keep_radiance);
 	}
 	if (result == GR_OK)
-		result = tone_create(&r->tone);
+		result = create_tone(r);
 	if (result == GR_OK)
 		result = timers_create(&r->timers);
 	if (result == GR_OK) {
@@ -212,7 +233,7 @@ static void log_stages(const struct renderer *r, const struct emissive_patches *
 	gr_info("stages gbuffer and shade: %d picture%s of %d x %d, drawn when the eye or the "
 		"light changes",
 		r->eye_count, r->eye_count > 1 ? "s" : "", r->params.width, r->params.height);
-	gr_info("stage tone: %s, %s", r->file->tone.curve == SCENE_CURVE_REINHARD ? "L/(1+L)" : "linear",
+	gr_info("stage tone: %s, %s", tone_curve_name(r->file->tone.curve),
 		r->file->tone.srgb ? "sRGB" : "power law");
 }
 

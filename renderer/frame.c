@@ -31,8 +31,22 @@ static void lamp_init(struct frame_lamp *lamp, const struct scene_lamp *from,
 	}
 }
 
+struct tone_look render_frame_look(const struct render_frame *frame)
+{
+	return (struct tone_look){
+		.curve = frame->curve,
+		.exposure = (double)frame->exposure,
+		.eye = { (double)frame->adaptation[0], (double)frame->adaptation[1],
+			 (double)frame->pigment[0], (double)frame->pigment[1] },
+		.luminance_max = (double)frame->luminance_max,
+		.bias = (double)frame->tone_bias,
+	};
+}
+
 void render_frame_init(struct render_frame *frame, const struct scene_file *file)
 {
+	const struct tone_look look = tone_look_of_scene(&file->tone);
+
 	*frame = (struct render_frame){
 		.T_scene_room = file->room,
 		.T_room_head = GR_POSE_IDENTITY,
@@ -44,6 +58,10 @@ void render_frame_init(struct render_frame *frame, const struct scene_file *file
 		.scattering_per_m = file->scattering_per_m,
 		.exposure = file->tone.exposure,
 		.curve = file->tone.curve,
+		.adaptation = { (float)look.eye.cone, (float)look.eye.rod },
+		.pigment = { (float)look.eye.cone_pigment, (float)look.eye.rod_pigment },
+		.luminance_max = file->tone.luminance_max,
+		.tone_bias = file->tone.bias,
 		.gamma_encode = file->tone.gamma_end_to_end / file->tone.gamma_display,
 		.srgb = file->tone.srgb,
 	};

@@ -7,6 +7,7 @@
 
 #include "base/pose.h"
 #include "config/scene_file.h"
+#include "renderer/tone/curve.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -32,6 +33,9 @@ struct render_frame {
 	float absorption_per_m, scattering_per_m;
 	float exposure;
 	enum scene_curve curve;
+	float adaptation[2], pigment[2]; /* of cones and rods, renderer/tone/adapt.h */
+	float luminance_max;             /* cd/m^2 */
+	float tone_bias;
 	float gamma_encode; /* gamma_end_to_end / gamma_display, seed 004 section 3.3.6 */
 	bool srgb;
 };
@@ -42,5 +46,7 @@ struct render_frame {
  * centre plus its radius along +x; lamps of wand and head are at the head.
  */
 void render_frame_init(struct render_frame *frame, const struct scene_file *file);
+/* How its pictures are to be shown. */
+struct tone_look render_frame_look(const struct render_frame *frame);
 
 #endif

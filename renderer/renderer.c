@@ -118,14 +118,14 @@ static int update_gi(struct renderer *r, const struct render_frame *frame, bool 
 
 static bool take_tone(struct renderer *r, const struct render_frame *frame)
 {
-	struct tone_values values = { frame->exposure, frame->curve, frame->gamma_encode,
-				      frame->srgb };
-	bool changed = r->fresh || values.exposure != r->tone_values.exposure ||
-		       values.curve != r->tone_values.curve ||
-		       values.gamma_encode != r->tone_values.gamma_encode ||
-		       values.srgb != r->tone_values.srgb;
+	const struct tone_look look = render_frame_look(frame);
+	struct tone_values values = { .gamma_encode = frame->gamma_encode, .srgb = frame->srgb };
+	bool changed;
 
-	r->tone_values = values;
+	tone_factors(&look, &values.factors);
+	changed = r->fresh || !tone_values_same(&values, &r->tone_values);
+	if (changed)
+		r->tone_values = values;
 	return changed;
 }
 
@@ -279,6 +279,8 @@ static bool lamp_valid(const struct frame_lamp *lamp)
 
 static bool frame_valid(const struct renderer *r, const struct render_frame *frame)
 {
+	const struct tone_look look = render_frame_look(frame);
+
 	for (size_t i = 0; i < r->file->lamp_count; i++)
 		if (frame->lamps[i].on && !lamp_valid(&frame->lamps[i]))
 			return false;
@@ -286,8 +288,7 @@ static bool frame_valid(const struct renderer *r, const struct render_frame *fra
 	       isfinite(frame->eye_separation_m) && frame->absorption_per_m >= 0 &&
 	       frame->scattering_per_m >= 0 && isfinite(frame->absorption_per_m) &&
 	       isfinite(frame->scattering_per_m) && isfinite(frame->gi_incremental) &&
-	       isfinite(frame->exposure) &&
-	       isfinite(frame->gamma_encode) && frame->gamma_encode > 0;
+	       tone_look_valid(&look) && isfinite(frame->gamma_encode) && frame->gamma_encode > 0;
 }
 
 int renderer_draw(struct renderer *renderer, const struct render_frame *frame)

@@ -20,6 +20,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+struct projector; /* renderer/tone/projector.h */
+
 enum renderer_eyes {
 	RENDERER_MONO,
 	RENDERER_QUAD_BUFFER,
@@ -36,6 +38,8 @@ struct renderer_params {
 	struct projection_wall wall; /* room frame; without it: a camera per still */
 	bool keep_radiance;          /* scene-linear pictures can be read back */
 	bool quiet;                  /* the stages are not logged */
+	const struct projector *projector; /* for create; NULL: pictures are encoded for the scene's display */
+	bool dither;                 /* of the target's bits; none where that is float */
 	/* For gi.method = "auto": this plan, copied; NULL: the one that plan_light.h makes here. */
 	const struct light_plan *light;
 	struct alive alive; /* asked between the steps of renderer_create, and while surfels are baked */

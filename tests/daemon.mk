@@ -57,7 +57,7 @@ check_PROGRAMS += tests/unit/test_saved_state
 TESTS += tests/unit/test_saved_state
 tests_unit_test_saved_state_SOURCES = tests/unit/test_saved_state.c tests/unit/unit.h
 tests_unit_test_saved_state_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
-tests_unit_test_saved_state_LDADD = daemon/libgdaemon.a $(PROTOCOL_LIBS) $(CONFIG_LIBS) \
+tests_unit_test_saved_state_LDADD = daemon/libgdaemon.a renderer/libgrenderer.a $(PROTOCOL_LIBS) $(CONFIG_LIBS) \
 	$(CMOCKA_LIBS) -lpthread
 
 check_PROGRAMS += tests/unit/test_master_state
@@ -127,7 +127,7 @@ noinst_PROGRAMS += tests/fuzz/fuzz_control
 tests_fuzz_fuzz_control_SOURCES = tests/fuzz/fuzz_control.c
 tests_fuzz_fuzz_control_CFLAGS = $(TEST_CFLAGS) $(CGLM_CFLAGS)
 tests_fuzz_fuzz_control_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
-tests_fuzz_fuzz_control_LDADD = daemon/libgdaemon.a $(PROTOCOL_LIBS) $(CONFIG_LIBS) $(SYSTEMD_LIBS) -lm
+tests_fuzz_fuzz_control_LDADD = daemon/libgdaemon.a renderer/libgrenderer.a $(PROTOCOL_LIBS) $(CONFIG_LIBS) $(SYSTEMD_LIBS) -lm
 endif
 
 # Fuzzer: see tests/protocol.mk.
@@ -137,5 +137,5 @@ noinst_PROGRAMS += tests/fuzz/fuzz_saved_state
 tests_fuzz_fuzz_saved_state_SOURCES = tests/fuzz/fuzz_saved_state.c
 tests_fuzz_fuzz_saved_state_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
 tests_fuzz_fuzz_saved_state_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
-tests_fuzz_fuzz_saved_state_LDADD = daemon/libgdaemon.a $(PROTOCOL_LIBS) $(CONFIG_LIBS)
+tests_fuzz_fuzz_saved_state_LDADD = daemon/libgdaemon.a renderer/libgrenderer.a $(PROTOCOL_LIBS) $(CONFIG_LIBS) -lm
 endif

@@ -5,7 +5,6 @@ FOLDER_SOURCES = \
 	tests/accuracy/folder/json_walk.c tests/accuracy/folder/json_walk.h \
 	tests/accuracy/folder/methods.c tests/accuracy/folder/methods.h \
 	tests/accuracy/folder/model.c tests/accuracy/folder/model.h \
-	tests/accuracy/folder/preetham.c tests/accuracy/folder/preetham.h \
 	tests/accuracy/folder/scene_text.c tests/accuracy/folder/scene_text.h \
 	tests/accuracy/folder/work.h
 FOLDER_CFLAGS = $(TEST_CFLAGS) $(EPOXY_CFLAGS) $(OPENEXR_CFLAGS) $(JSONC_CFLAGS) -D_GNU_SOURCE

@@ -53,6 +53,12 @@ tests_unit_test_environment_SOURCES = tests/unit/test_environment.c tests/unit/u
 tests_unit_test_environment_CFLAGS = $(GL_TEST_CFLAGS)
 tests_unit_test_environment_LDADD = $(GL_TEST_LIBS)
 
+check_PROGRAMS += tests/unit/test_light_pictures
+TESTS += tests/unit/test_light_pictures
+tests_unit_test_light_pictures_SOURCES = tests/unit/test_light_pictures.c tests/unit/unit.h tests/unit/shared.h
+tests_unit_test_light_pictures_CFLAGS = $(GL_TEST_CFLAGS)
+tests_unit_test_light_pictures_LDADD = $(GL_TEST_LIBS)
+
 check_PROGRAMS += tests/unit/test_brdf
 TESTS += tests/unit/test_brdf
 tests_unit_test_brdf_SOURCES = tests/unit/test_brdf.c tests/unit/unit.h tests/unit/shared.h

@@ -23,6 +23,31 @@ tests_accuracy_test_seam_SOURCES = tests/accuracy/test_seam.c $(VIEW_TEST_SHARED
 tests_accuracy_test_seam_CFLAGS = $(VIEW_TEST_CFLAGS)
 tests_accuracy_test_seam_LDADD = $(VIEW_TEST_LIBS)
 
+# on the CPU alone
+check_PROGRAMS += tests/unit/test_projector
+TESTS += tests/unit/test_projector
+tests_unit_test_projector_SOURCES = tests/unit/test_projector.c tests/unit/unit.h
+tests_unit_test_projector_CFLAGS = $(TEST_CFLAGS) $(LIBCONFIG_CFLAGS)
+tests_unit_test_projector_LDADD = $(VIEW_TEST_LIBS)
+
+check_PROGRAMS += tests/accuracy/test_curves
+TESTS += tests/accuracy/test_curves
+tests_accuracy_test_curves_SOURCES = tests/accuracy/test_curves.c tests/unit/unit.h tests/unit/shared.h
+tests_accuracy_test_curves_CFLAGS = $(TEST_CFLAGS)
+tests_accuracy_test_curves_LDADD = $(VIEW_TEST_LIBS)
+
+check_PROGRAMS += tests/accuracy/test_sky
+TESTS += tests/accuracy/test_sky
+tests_accuracy_test_sky_SOURCES = tests/accuracy/test_sky.c tests/unit/unit.h tests/unit/shared.h
+tests_accuracy_test_sky_CFLAGS = $(TEST_CFLAGS) $(LIBCONFIG_CFLAGS)
+tests_accuracy_test_sky_LDADD = $(VIEW_TEST_LIBS)
+
+check_PROGRAMS += tests/accuracy/test_sh
+TESTS += tests/accuracy/test_sh
+tests_accuracy_test_sh_SOURCES = tests/accuracy/test_sh.c tests/unit/unit.h tests/unit/shared.h
+tests_accuracy_test_sh_CFLAGS = $(TEST_CFLAGS)
+tests_accuracy_test_sh_LDADD = $(VIEW_TEST_LIBS)
+
 check_PROGRAMS += tests/accuracy/test_tone
 TESTS += tests/accuracy/test_tone
 tests_accuracy_test_tone_SOURCES = tests/accuracy/test_tone.c $(VIEW_TEST_SHARED)

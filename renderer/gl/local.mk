@@ -9,12 +9,13 @@ RENDERER_SOURCES += \
 	renderer/image/compare.c renderer/image/compare.h renderer/image/compare_flip.c \
 	renderer/image/compare_ssim.c renderer/image/convolve.c renderer/image/convolve.h \
 	renderer/image/exr_private.h renderer/image/exr_read.c renderer/image/exr_write.c \
-	renderer/image/image.c renderer/image/image.h renderer/image/png.c \
+	renderer/image/hdr.c renderer/image/image.c renderer/image/image.h renderer/image/png.c \
 	renderer/image/read_file.c renderer/image/read_file.h \
 	renderer/scene/brdf_color.c renderer/scene/brdf_private.h \
 	renderer/scene/brdf_read.c renderer/scene/brdf_read.h \
 	renderer/scene/brdf_sampling.c renderer/scene/brdf_table.c renderer/scene/brdf_table.h \
 	renderer/scene/environment.c renderer/scene/environment.h \
+	renderer/scene/environment_cube.c renderer/scene/environment_cube.h \
 	renderer/scene/environment_load.c renderer/scene/environment_private.h \
 	renderer/scene/environment_sample.c \
 	renderer/scene/gltf.c renderer/scene/gltf.h renderer/scene/gltf_pack.c \
@@ -25,6 +26,8 @@ RENDERER_SOURCES += \
 	renderer/scene/scene_block.c renderer/scene/scene_block.h \
 	renderer/scene/scene_hash.c renderer/scene/scene_import.c \
 	renderer/scene/scene_surface.c renderer/scene/scene_surface.h \
+	renderer/scene/sh.c renderer/scene/sh.h \
+	renderer/scene/sky.c renderer/scene/sky.h \
 	renderer/scene/texel.c renderer/scene/texel.h renderer/scene/texture.c
 
 SHADERS += renderer/shaders/material.glsl

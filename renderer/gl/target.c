@@ -79,21 +79,24 @@ static void GLAPIENTRY debug_message(GLenum source, GLenum type, GLuint id, GLen
 
 static int create_framebuffers(struct target *target)
 {
+	static const GLenum formats[] = { GL_RGBA8, GL_RGB10_A2, GL_RGBA16F };
+	static const int bits[] = { 8, 10, 16 };
 	int count = target->quad_buffer ? 2 : 1;
 
+	target->bits = bits[target->depth];
 	for (int i = 0; i < count; i++) {
 		GLenum status;
 
 		glCreateRenderbuffers(1, &target->color[i]);
-		glNamedRenderbufferStorage(target->color[i], GL_RGBA8, target->width,
+		glNamedRenderbufferStorage(target->color[i], formats[target->depth], target->width,
 					   target->height);
 		glCreateFramebuffers(1, &target->framebuffer[i]);
 		glNamedFramebufferRenderbuffer(target->framebuffer[i], GL_COLOR_ATTACHMENT0,
 					       GL_RENDERBUFFER, target->color[i]);
 		status = glCheckNamedFramebufferStatus(target->framebuffer[i], GL_FRAMEBUFFER);
 		if (status != GL_FRAMEBUFFER_COMPLETE) {
-			gr_error("%s: no framebuffer of %d x %d RGBA8 (status 0x%x)",
-				 target->platform, target->width, target->height, status);
+			gr_error("%s: no framebuffer of %d x %d with %d bits a band (status 0x%x)",
+				 target->platform, target->width, target->height, target->bits, status);
 			return GR_ERR_GL;
 		}
 	}
@@ -143,6 +146,8 @@ int target_create(struct target **out, const struct target_params *params)
 	*out = NULL;
 	if (params->width < 1 || params->height < 1)
 		return GR_ERR_RANGE;
+	if (params->depth == TARGET_DEPTH_FLOAT && params->kind != TARGET_HEADLESS)
+		return GR_ERR_RANGE;
 	target = calloc(1, sizeof *target);
 	if (!target)
 		return GR_ERR_NOMEM;
@@ -150,6 +155,7 @@ int target_create(struct target **out, const struct target_params *params)
 	target->width = params->width;
 	target->height = params->height;
 	target->quad_buffer = params->quad_buffer;
+	target->depth = params->depth;
 	result = target->ops->open(target, params);
 	if (result == GR_OK)
 		result = set_up(target, params);
@@ -203,6 +209,11 @@ void target_bind(const struct target *target, int eye, bool read)
 int target_eyes(const struct target *target)
 {
 	return target->quad_buffer ? 2 : 1;
+}
+
+int target_bits(const struct target *target)
+{
+	return target->bits;
 }
 
 int target_barrier_join(struct target *target, char *why, size_t size)

@@ -12,6 +12,9 @@
 
 enum target_kind { TARGET_HEADLESS, TARGET_WINDOW, TARGET_FULLSCREEN };
 
+/* Of a band of the final picture. */
+enum target_depth { TARGET_DEPTH_8, TARGET_DEPTH_10, TARGET_DEPTH_FLOAT };
+
 struct target_params {
 	enum target_kind kind;
 	const char *title;
@@ -20,6 +23,7 @@ struct target_params {
 	int gpu;             /* EGL device index, -1: the first that gives GL 4.5 */
 	int monitor;
 	bool quad_buffer; /* ask for a stereo visual; refused when there is none */
+	enum target_depth depth; /* RGBA8, RGB10_A2, RGBA16F; the last only headless. A window may have less: target_bits */
 	bool debug;       /* KHR_debug messages go to the log */
 };
 
@@ -32,8 +36,8 @@ struct target;
  */
 int target_create(struct target **out, const struct target_params *params);
 void target_destroy(struct target **target);
-/* Framebuffer to draw the final picture of an eye into: 0 in a window, an RGBA8
- * FBO headless (readable after the frame). eye 1 differs only with quad_buffer. */
+/* Framebuffer to draw the final picture of an eye into: 0 in a window, an FBO of
+ * the depth headless (readable after the frame). eye 1 differs only with quad_buffer. */
 unsigned target_framebuffer(const struct target *target, int eye);
 /*
  * Binds that framebuffer for drawing (or for reading), and in a quad-buffered
@@ -42,6 +46,8 @@ unsigned target_framebuffer(const struct target *target, int eye);
 void target_bind(const struct target *target, int eye, bool read);
 /* Framebuffers or back buffers: 2 with quad_buffer. */
 int target_eyes(const struct target *target);
+/* Bits of a band: 8, 10, or 16 for float. */
+int target_bits(const struct target *target);
 void target_size(const struct target *target, int *width, int *height);
 /* Shows what was drawn. Headless: nothing but GL_FLUSH. False when the window was closed. */
 bool target_swap(struct target *target);

@@ -47,6 +47,12 @@ static void set_hints(const struct target_params *params)
 	/* A wall must stay when another window takes the keyboard. */
 	glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
 	glfwWindowHint(GLFW_FOCUS_ON_SHOW, GLFW_FALSE);
+	if (params->depth == TARGET_DEPTH_10) {
+		glfwWindowHint(GLFW_RED_BITS, 10);
+		glfwWindowHint(GLFW_GREEN_BITS, 10);
+		glfwWindowHint(GLFW_BLUE_BITS, 10);
+		glfwWindowHint(GLFW_ALPHA_BITS, 2);
+	}
 	glfwWindowHint(GLFW_DEPTH_BITS, 0);
 	glfwWindowHint(GLFW_STENCIL_BITS, 0);
 }
@@ -91,6 +97,19 @@ static int take_size(struct target *target, const struct target_params *params)
 		gr_warning("%s: %d x %d pixels asked for, the window has %d x %d", target->platform,
 			   params->width, params->height, target->width, target->height);
 	return GR_OK;
+}
+
+/* What the window system gave, which need not be what was asked for. */
+static void take_bits(struct target *target)
+{
+	GLint bits = 0;
+
+	glGetNamedFramebufferAttachmentParameteriv(0, target->quad_buffer ? GL_BACK_LEFT : GL_BACK,
+						   GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, &bits);
+	target->bits = bits > 0 ? bits : 8;
+	if (target->depth == TARGET_DEPTH_10 && target->bits < 10)
+		gr_warning("%s: 10 bits a band asked for, the window has %d", target->platform,
+			   target->bits);
 }
 
 static int check_stereo(const struct target *target)
@@ -139,6 +158,8 @@ static int open_window(struct target *target, const struct target_params *params
 		result = check_stereo(target);
 	if (result == GR_OK)
 		result = take_size(target, params);
+	if (result == GR_OK)
+		take_bits(target);
 	return result;
 }
 

@@ -24,6 +24,8 @@ struct target {
 	void *backend;
 	int width, height;
 	bool quad_buffer;
+	enum target_depth depth;
+	int bits;
 	unsigned framebuffer[2], color[2]; /* offscreen */
 	char platform[96];
 	char renderer[160];

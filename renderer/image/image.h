@@ -1,6 +1,6 @@
 /*
  * Pictures in files. EXR through OpenEXRCore (scan lines, 32 bit float or
- * half, ZIP), PNG through libpng. Row 0 is the top everywhere.
+ * half, ZIP), Radiance pictures, PNG through libpng. Row 0 is the top everywhere.
  */
 #ifndef GROTTO_RENDERER_IMAGE_IMAGE_H
 #define GROTTO_RENDERER_IMAGE_IMAGE_H
@@ -38,6 +38,16 @@ int image_read_exr(const char *path, struct image *out, struct gr_diag *diag);
 /* The same from bytes; name is for diag. */
 int image_decode_exr(const uint8_t *bytes, size_t len, const char *name, struct image *out,
 		     struct gr_diag *diag);
+/*
+ * Radiance's RGBE (.hdr), any of its codings, the top row first; divided by the
+ * EXPOSUREs of its header. 3 channels. GR_ERR_CONFIG as above.
+ */
+int image_decode_hdr(const uint8_t *bytes, size_t len, const char *name, struct image *out,
+		     struct gr_diag *diag);
+/* OpenEXR or Radiance, by the first bytes. */
+int image_decode_light(const uint8_t *bytes, size_t len, const char *name, struct image *out,
+		       struct gr_diag *diag);
+int image_read_light(const char *path, struct image *out, struct gr_diag *diag);
 /* rgb: 3 bytes a pixel, already encoded. */
 int image_write_png(const char *path, int width, int height, const uint8_t *rgb);
 /* *rgb is the caller's to free. */

@@ -133,7 +133,14 @@ void environment_describe(const struct environment *environment, char *text, siz
 	float e[3];
 
 	environment_irradiance(environment, up, e);
-	if (environment->width)
+	if (environment->is_sky)
+		snprintf(text, size, "a sky of turbidity %s, its sun %s degrees high, irradiance of open "
+			 "ground without the sun's %s %s %s W/m2",
+			 gr_plain((double)environment->turbidity, 3).text,
+			 gr_plain(asin((double)environment->to_sun[1]) * 180 / M_PI, 3).text,
+			 gr_plain((double)e[0], 4).text, gr_plain((double)e[1], 4).text,
+			 gr_plain((double)e[2], 4).text);
+	else if (environment->width)
 		snprintf(text, size, "a picture of %d x %d pixels%s, irradiance of open ground "
 			 "%s %s %s W/m2", environment->width, environment->height, where,
 			 gr_plain((double)e[0], 4).text, gr_plain((double)e[1], 4).text,
@@ -157,9 +164,18 @@ void environment_hash(const struct environment *environment, uint8_t out[32])
 				  sizeof environment->constant);
 	crypto_generichash_update(&state, (const uint8_t *)&environment->heading_rad,
 				  sizeof environment->heading_rad);
-	if (environment->rgb)
+	if (environment->is_sky) {
+		/* Not the pixels: machines with another libm have other last bits. */
+		const int32_t sky[4] = { (int32_t)lround(1e5 * (double)environment->turbidity),
+					 (int32_t)lround(1e5 * (double)environment->to_sun[0]),
+					 (int32_t)lround(1e5 * (double)environment->to_sun[1]),
+					 (int32_t)lround(1e5 * (double)environment->to_sun[2]) };
+
+		crypto_generichash_update(&state, (const uint8_t *)sky, sizeof sky);
+	} else if (environment->rgb) {
 		crypto_generichash_update(&state, (const uint8_t *)environment->rgb,
 					  3 * (size_t)environment->width *
 						  (size_t)environment->height * sizeof(float));
+	}
 	crypto_generichash_final(&state, out, 32);
 }

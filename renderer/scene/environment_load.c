@@ -1,12 +1,19 @@
 /* From what a scene file says, or a picture, to an environment. */
+#include "config.h" /* _GNU_SOURCE */
+
 #include "renderer/scene/environment_private.h"
 
 #include "base/plain.h"
 #include "base/result.h"
+#include "renderer/scene/environment_cube.h"
+#include "renderer/scene/sky.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Pixels around, 0.7 degrees: what lies between is linear to 0.1 per cent but next to the sun. */
+#define SKY_WIDTH 512
 
 static int check_pixels(const struct image *image, float scale, const char *name,
 			struct gr_diag *diag, size_t *negative)
@@ -114,6 +121,78 @@ int environment_from_image(struct environment **out, const struct image *image,
 	return result;
 }
 
+/* Six pictures, by the names that the one with the * stands for. */
+static int read_faces(const char *path, struct image *out, struct gr_diag *diag)
+{
+	static const char *const names[6] = { "px", "nx", "py", "ny", "pz", "nz" };
+	const char *star = strrchr(path, '*');
+	struct image faces[6] = { { 0 } };
+	int result = star ? GR_OK : GR_ERR_CONFIG;
+
+	for (int i = 0; i < 6 && result == GR_OK; i++) {
+		char *name;
+
+		if (asprintf(&name, "%.*s%s%s", (int)(star - path), path, names[i], star + 1) < 0) {
+			result = GR_ERR_NOMEM;
+			break;
+		}
+		result = image_read_light(name, &faces[i], diag);
+		free(name);
+	}
+	if (result == GR_OK)
+		result = cube_unfold(faces, path, out, diag);
+	for (int i = 0; i < 6; i++)
+		image_finish(&faces[i]);
+	return result;
+}
+
+/* As latitude-longitude, whatever it was; *out is to be finished in any case. */
+static int read_picture(const char *path, enum scene_projection projection, struct image *out,
+			struct gr_diag *diag)
+{
+	struct image cross;
+	int result;
+
+	memset(out, 0, sizeof *out);
+	if (projection == SCENE_PROJECTION_LATLONG)
+		return image_read_light(path, out, diag);
+	if (projection == SCENE_PROJECTION_FACES)
+		return read_faces(path, out, diag);
+	result = image_read_light(path, &cross, diag);
+	if (result == GR_OK)
+		result = cube_unfold_cross(&cross, path, out, diag);
+	image_finish(&cross);
+	return result;
+}
+
+/* The paper's sky as a picture: its horizon goes on below, where nothing comes from. */
+static int create_sky(struct environment **out, const struct scene_environment *said,
+		      const char *name, struct gr_diag *diag)
+{
+	const double to_sun[3] = { (double)said->to_sun[0], (double)said->to_sun[1],
+				   (double)said->to_sun[2] };
+	struct scene_environment unturned = *said;
+	struct image picture;
+	struct sky sky;
+	int result;
+
+	sky_init(&sky, (double)said->turbidity, to_sun);
+	result = sky_picture(&sky, SKY_WIDTH, SKY_WIDTH / 2, &picture);
+	if (result != GR_OK)
+		return result;
+	unturned.scale = 1;
+	unturned.heading_rad = 0; /* the sun's direction has it */
+	unturned.upper_only = true;
+	result = environment_from_image(out, &picture, &unturned, name, diag);
+	image_finish(&picture);
+	if (result == GR_OK) {
+		(*out)->is_sky = true;
+		(*out)->turbidity = said->turbidity;
+		memcpy((*out)->to_sun, said->to_sun, sizeof said->to_sun);
+	}
+	return result;
+}
+
 int environment_create(struct environment **out, const struct scene_file *file,
 		       struct gr_diag *diag)
 {
@@ -132,10 +211,12 @@ int environment_create(struct environment **out, const struct scene_file *file,
 		memcpy((*out)->constant, said->radiance, sizeof(*out)->constant);
 		return GR_OK;
 	}
+	if (said->kind == SCENE_ENVIRONMENT_SKY)
+		return create_sky(out, said, file->path, diag);
 	path = scene_file_beside(file, said->file);
 	if (!path)
 		return GR_ERR_NOMEM;
-	result = image_read_exr(path, &image, diag);
+	result = read_picture(path, said->projection, &image, diag);
 	if (result == GR_OK)
 		result = environment_from_image(out, &image, said, path, diag);
 	image_finish(&image);

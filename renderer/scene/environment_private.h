@@ -10,6 +10,10 @@ struct environment {
 	float heading_rad;
 	double turn[2]; /* cosine and sine of the heading */
 
+	/* Of a sky, which is a picture, too. */
+	bool is_sky;
+	float turbidity, to_sun[3];
+
 	/* Of a picture. */
 	int width, height; /* 0: constant */
 	float *rgb;

@@ -3,9 +3,11 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "renderer/gl/program.h"
+#include "renderer/tone/projector.h"
 #include "renderer/view/blocks.h"
 
 #include <epoxy/gl.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,6 +17,8 @@
 struct tone_stage {
 	unsigned program;
 	unsigned empty_vao;
+	unsigned map;     /* of the projector, 0: none */
+	float dither;     /* a step of the target, 0: none */
 	unsigned counter;         /* on the GPU, grows only */
 	unsigned copies;          /* SLOTS counts, mapped for as long as the stage lives */
 	const uint32_t *mapped;
@@ -24,7 +28,17 @@ struct tone_stage {
 	uint64_t total;
 };
 
-int tone_create(struct tone_stage **out)
+static void create_map(struct tone_stage *stage, const float (*map)[3])
+{
+	glCreateTextures(GL_TEXTURE_1D, 1, &stage->map);
+	glTextureStorage1D(stage->map, 1, GL_RGBA32F, PROJECTOR_MAP);
+	glTextureSubImage1D(stage->map, 0, 0, PROJECTOR_MAP, GL_RGB, GL_FLOAT, map);
+	glTextureParameteri(stage->map, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+	glTextureParameteri(stage->map, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+	glTextureParameteri(stage->map, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+}
+
+int tone_create(struct tone_stage **out, const float (*map)[3], int dither_bits)
 {
 	const GLbitfield access = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
 	const uint32_t zero[SLOTS] = { 0 };
@@ -35,6 +49,9 @@ int tone_create(struct tone_stage **out)
 	if (!stage)
 		return GR_ERR_NOMEM;
 	result = program_create_graphics(&stage->program, "screen.vert", NULL, "tone.frag", NULL);
+	if (map)
+		create_map(stage, map);
+	stage->dither = dither_bits > 0 ? 1 / (exp2f((float)dither_bits) - 1) : 0;
 	glCreateVertexArrays(1, &stage->empty_vao);
 	glCreateBuffers(1, &stage->counter);
 	glNamedBufferStorage(stage->counter, sizeof(zero[0]), zero, 0);
@@ -61,6 +78,7 @@ void tone_destroy(struct tone_stage **stage)
 		glDeleteSync(s->fences[i]);
 	if (s->mapped)
 		glUnmapNamedBuffer(s->copies);
+	glDeleteTextures(1, &s->map);
 	glDeleteBuffers(1, &s->copies);
 	glDeleteBuffers(1, &s->counter);
 	glDeleteVertexArrays(1, &s->empty_vao);
@@ -69,9 +87,28 @@ void tone_destroy(struct tone_stage **stage)
 	*stage = NULL;
 }
 
+bool tone_values_same(const struct tone_values *a, const struct tone_values *b)
+{
+	bool same = a->factors.curve == b->factors.curve &&
+		    a->factors.exposure == b->factors.exposure &&
+		    a->gamma_encode == b->gamma_encode && a->srgb == b->srgb;
+
+	for (int i = 0; i < 4; i++)
+		same = same && a->factors.a[i] == b->factors.a[i] &&
+		       a->factors.b[i] == b->factors.b[i];
+	return same;
+}
+
+static void set_vec4(int location, const double v[4])
+{
+	glUniform4f(location, (float)v[0], (float)v[1], (float)v[2], (float)v[3]);
+}
+
 void tone_draw(struct tone_stage *stage, const struct tone_values *values, unsigned radiance,
 	       unsigned framebuffer, int x, int y, int width, int height)
 {
+	const struct tone_factors *f = &values->factors;
+
 	glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
 	glViewport(x, y, width, height);
 	glDisable(GL_DEPTH_TEST);
@@ -82,8 +119,13 @@ void tone_draw(struct tone_stage *stage, const struct tone_values *values, unsig
 	glBindTextureUnit(0, radiance);
 	glUseProgram(stage->program);
 	glUniform2i(1, x, y);
-	glUniform4f(2, values->exposure, values->gamma_encode,
-		    values->curve == SCENE_CURVE_REINHARD ? 1 : 0, values->srgb ? 1 : 0);
+	glUniform4f(2, (float)f->exposure, values->gamma_encode, values->srgb ? 1 : 0, 0);
+	glUniform2f(6, stage->map ? PROJECTOR_MAP - 1 : 0, stage->dither);
+	if (stage->map)
+		glBindTextureUnit(1, stage->map);
+	glUniform1ui(3, f->curve);
+	set_vec4(4, f->a);
+	set_vec4(5, f->b);
 	glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 

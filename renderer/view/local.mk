@@ -1,6 +1,8 @@
 # renderer/view, renderer/tone
 RENDERER_SOURCES += \
+	renderer/tone/adapt.c renderer/tone/adapt.h renderer/tone/curve.c renderer/tone/curve.h \
 	renderer/tone/encode.c renderer/tone/encode.h renderer/tone/srgb.h \
+	renderer/tone/projector.c renderer/tone/projector.h \
 	renderer/tone/tone.c renderer/tone/tone.h \
 	renderer/view/backdrop.c renderer/view/backdrop.h \
 	renderer/view/blocks.h \

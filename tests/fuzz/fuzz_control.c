@@ -70,6 +70,8 @@ static void start(struct room *room)
 	snprintf(room->lamps[1].name, sizeof room->lamps[1].name, "torch");
 	room->scene.lamps = room->lamps;
 	room->scene.lamp_count = 2;
+	room->scene.tone.adaptation = room->scene.tone.luminance_max = 100;
+	room->scene.tone.bias = 0.85f;
 	room->scene.tone.gamma_display = room->scene.tone.gamma_end_to_end = 1;
 	if (param_state_create(&room->state) || loop_create(&room->loop) ||
 	    control_create(&room->control, room->loop, path, answer, room))
@@ -77,6 +79,8 @@ static void start(struct room *room)
 	master_settings_init(&room->settings, &room->scene, 0.063f);
 	/* What a scene file holds has been checked; this one is made by hand. */
 	room->settings.exposure = room->settings.gamma_encode = 1;
+	room->settings.adaptation = room->settings.luminance_max = 100;
+	room->settings.tone_bias = 0.85f;
 	room->settings.gi_steps = 1;
 }
 

@@ -1,4 +1,4 @@
-/* EXR files from outside. */
+/* Pictures of light from outside: OpenEXR and Radiance, by their first bytes. */
 #include "renderer/image/image.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -8,7 +8,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	struct gr_diag diag = { 0 };
 	struct image image;
 
-	image_decode_exr(data, size, "fuzz.exr", &image, &diag);
+	image_decode_light(data, size, "fuzz.exr", &image, &diag);
 	image_finish(&image);
 	gr_diag_finish(&diag);
 	return 0;

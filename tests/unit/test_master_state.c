@@ -58,6 +58,7 @@ static int setup(void **state)
 	f->scene.lamp_count = 4;
 	f->scene.gi = (struct scene_gi){ .method = SCENE_GI_LPV, .steps = 12, .incremental = 0.5f };
 	f->scene.tone = (struct scene_tone){ .curve = SCENE_CURVE_REINHARD, .exposure = 3,
+					     .adaptation = 100, .luminance_max = 1e4f, .bias = 0.85f,
 					     .gamma_display = 2.2f, .gamma_end_to_end = 1.25f };
 	f->scene.scattering_per_m = 0.1f;
 	const vec3 place = { 10, 0, -5 };
@@ -260,7 +261,13 @@ static void settings_change_what_they_name(void **state)
 	assert_int_equal(set(f, why, sizeof why, "gi_steps 20"), GR_OK);
 	assert_int_equal(set(f, why, sizeof why, "absorption 0.25"), GR_OK);
 	assert_int_equal(set(f, why, sizeof why, "exposure 1e2"), GR_OK);
+	assert_int_equal(set(f, why, sizeof why, "tone_curve 3"), GR_OK);
+	assert_int_equal(set(f, why, sizeof why, "adaptation 0.04"), GR_OK);
 	next(f, false);
+	assert_int_equal(*param_u32(f->params, PARAM_TONE_CURVE), 3);
+	assert_float_equal(param_f32(f->params, PARAM_ADAPTATION)[1], 0.04, 1e-6);
+	assert_float_equal(param_f32(f->params, PARAM_PIGMENT)[0], 1, 1e-6);
+	assert_float_equal(param_f32(f->params, PARAM_PIGMENT)[1], 0.5, 1e-6); /* half-bleached there */
 	assert_int_equal(*param_u32(f->params, PARAM_LAMP_ON), 0xe);
 	assert_int_equal(*param_u32(f->params, PARAM_GI_STEPS), 20);
 	assert_float_equal(*param_f32(f->params, PARAM_ABSORPTION), 0.25, 0);
@@ -275,7 +282,7 @@ static void wrong_settings_change_nothing(void **state)
 	static const char *const wrong[] = {
 		"", "gi_steps", "gi_steps 0", "gi_steps 129", "gi_steps 8.5", "gi_steps 8 9",
 		"gi_steps nan", "gi_steps 8x", "absorption -1", "absorption nan", "absorption inf",
-		"exposure 0", "exposure 1e99", "tone_curve 2", "lamp", "lamp torch", "lamp torch up",
+		"exposure 0", "exposure 1e99", "tone_curve 4", "adaptation 0", "tone_bias 1", "luminance_max nan", "lamp", "lamp torch", "lamp torch up",
 		"lamp sun on", "lamp_intensity moth 1 2", "lamp_intensity moth 1 2 -3",
 		"lamp_intensity sun 1 2 3", "head_position 1 2 3", "frame_time 5",
 		"a-word-that-is-much-longer-than-any-setting-could-ever-be-in-this-house 1",

@@ -18,7 +18,8 @@ static struct saved_state sample(void)
 		.T_scene_room = { .p = { 1, -2, 3 }, .q = { 0, 0.6f, 0, 0.8f } },
 		.settings = { .gi_on = 1, .gi_steps = 9, .tone_curve = 1, .gi_incremental = 0.5f,
 			      .absorption = 0.1f, .scattering = 0.2f, .exposure = 2, .gamma_encode = 0.5f,
-			      .eye_separation = 0.06f, .lamp_on = 5 },
+			      .eye_separation = 0.06f, .adaptation = 50, .luminance_max = 1e4f,
+			      .tone_bias = 0.8f, .lamp_on = 5 },
 		.buttons = 3,
 	};
 
@@ -96,6 +97,8 @@ static void out_of_range(void **state)
 	REFUSED(s.frame = 0);
 	REFUSED(s.settings.exposure = 0);
 	REFUSED(s.settings.gi_steps = 1000);
+	REFUSED(s.settings.adaptation = NAN);
+	REFUSED(s.settings.tone_bias = 1);
 	REFUSED(s.settings.lamp_on = 1u << 20);
 	REFUSED(s.settings.lamp_intensity[47] = INFINITY);
 #undef REFUSED

@@ -1,8 +1,9 @@
 #include "tests/accuracy/folder/scene_text.h"
 
+#include "base/photometry.h"
 #include "base/result.h"
+#include "renderer/scene/sky.h"
 #include "tests/accuracy/folder/model.h"
-#include "tests/accuracy/folder/preetham.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,6 +11,8 @@
 #include <unistd.h>
 
 #define SKY_WIDTH 2048
+/* Its pictures of the sky: 1.0 is 16.667 kcd/m^2. */
+#define BLENDER_PER_WATT ((float)(0.06 / 1000 * GR_LUMENS_PER_WATT))
 #define MOST_BOUNCES 1024
 
 struct writer {
@@ -244,7 +247,8 @@ static void write_preetham(struct writer *w, json_object *environment)
 	static const char *const known[] = { "type", "turbidity", "sun_direction", "raw", NULL };
 	double turbidity = 0, sun[3] = { 0 }, length;
 	bool raw = json_flag(&w->walk, "environment", environment, "raw");
-	struct image sky = { 0 };
+	struct image picture = { 0 };
+	struct sky sky;
 	char *path = NULL;
 
 	json_only(&w->walk, "environment", environment, known);
@@ -261,10 +265,14 @@ static void write_preetham(struct writer *w, json_object *environment)
 		sun[i] /= length;
 	if (asprintf(&path, "%s/sky.exr", w->work) < 0)
 		return;
-	w->result = preetham_picture(&sky, SKY_WIDTH, SKY_WIDTH / 2, turbidity, sun);
-	if (w->result == GR_OK)
-		w->result = image_write_exr(path, &sky, NULL);
-	image_finish(&sky);
+	sky_init(&sky, turbidity, sun);
+	w->result = sky_picture(&sky, SKY_WIDTH, SKY_WIDTH / 2, &picture);
+	if (w->result == GR_OK) {
+		for (int i = 0; i < 3 * picture.width * picture.height; i++)
+			picture.data[i] *= BLENDER_PER_WATT;
+		w->result = image_write_exr(path, &picture, NULL);
+	}
+	image_finish(&picture);
 	fprintf(w->out, "environment = { kind = \"image\"; upper_only = %s; ", raw ? "false" : "true");
 	write_text(w->out, "file", path);
 	fputs("};\n", w->out);

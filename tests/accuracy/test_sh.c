@@ -1,0 +1,309 @@
+/*
+ * Spherical harmonics of light: the basis and its turns against SciPy, light probes
+ * against coefficients and irradiance that others computed (reference/README.md).
+ */
+#include "base/diag.h"
+#include "base/result.h"
+#include "renderer/image/image.h"
+#include "renderer/scene/sh.h"
+#include "tests/unit/shared.h"
+#include "tests/unit/unit.h"
+
+/* Numbers of the next line that begins with one; 0 at the end. */
+static int read_numbers(FILE *file, double *out, int most)
+{
+	char line[4096];
+
+	while (fgets(line, sizeof line, file)) {
+		char *at = line, *end;
+		int count = 0;
+
+		for (; count < most; count++) {
+			out[count] = strtod(at, &end);
+			if (end == at)
+				break;
+			at = end + (*end == ',');
+		}
+		if (count)
+			return count;
+	}
+	return 0;
+}
+
+static FILE *open_shared(const char *name)
+{
+	char path[1024];
+	FILE *file;
+
+	if (!shared_file(name, path))
+		return NULL;
+	file = fopen(path, "r");
+	assert_non_null(file);
+	return file;
+}
+
+static void basis(void **state)
+{
+	FILE *file = open_shared("reference/analytic/sh_basis.csv");
+	double row[3 + 36], got[SH_COUNT_MAX], worst = 0;
+	int rows = 0;
+
+	(void)state;
+	if (!file)
+		skip();
+	for (; read_numbers(file, row, 39) == 39; rows++) {
+		sh_basis(6, row, got);
+		for (int i = 0; i < 36; i++)
+			worst = fmax(worst, fabs(got[i] - row[3 + i]));
+	}
+	fclose(file);
+	printf("# basis, bands 0 to 5 in %d directions: off by %.1e\n", rows, worst);
+	assert_int_equal(rows, 17);
+	assert_true(worst < 1e-11);
+}
+
+static void turns(void **state)
+{
+	FILE *file = open_shared("reference/analytic/sh_rotation.csv");
+	double f[36][3] = { { 0 } }, g[36] = { 0 }, rotation[9], row[4], worst = 0;
+	char head[1024], *at;
+	int rows = 0;
+
+	(void)state;
+	if (!file)
+		skip();
+	assert_non_null(fgets(head, sizeof head, file));
+	at = strrchr(head, ')') + 2;
+	for (int i = 0; i < 9; i++) {
+		rotation[i] = strtod(at, &at);
+		at += *at == ',';
+	}
+	for (; read_numbers(file, row, 4) == 4; rows++) {
+		int i = (int)(row[0] * row[0] + row[0] + row[1]);
+
+		f[i][0] = row[2];
+		g[i] = row[3];
+	}
+	fclose(file);
+	assert_int_equal(rows, 36);
+	sh_rotate(6, rotation, (const double (*)[3])f, f);
+	for (int i = 0; i < 36; i++)
+		worst = fmax(worst, fabs(f[i][0] - g[i]));
+	printf("# turned, bands 0 to 5: off by %.1e\n", worst);
+	assert_true(worst < 1e-10);
+}
+
+/* A picture as an environment has it. */
+struct probe {
+	struct image image;
+	struct environment *environment;
+	struct environment_pixels pixels;
+};
+
+static bool load(struct probe *probe, const char *name, const struct scene_environment *said)
+{
+	struct gr_diag diag = { 0 };
+	char path[1024];
+
+	if (!shared_file(name, path))
+		return false;
+	assert_int_equal(image_read_exr(path, &probe->image, &diag), GR_OK);
+	assert_int_equal(environment_from_image(&probe->environment, &probe->image, said, name, &diag),
+			 GR_OK);
+	environment_pixels(probe->environment, &probe->pixels);
+	gr_diag_finish(&diag);
+	return true;
+}
+
+static void unload(struct probe *probe)
+{
+	environment_destroy(&probe->environment);
+	image_finish(&probe->image);
+}
+
+static const struct scene_environment plain = { .kind = SCENE_ENVIRONMENT_IMAGE, .scale = 1 };
+
+/* Worst difference over the largest coefficient. */
+static double against_table(const char *name, const double (*got)[3])
+{
+	FILE *file = open_shared(name);
+	double row[5], worst = 0;
+	int rows = 0;
+
+	assert_non_null(file);
+	for (; read_numbers(file, row, 5) == 5; rows++)
+		for (int k = 0; k < 3; k++)
+			worst = fmax(worst, fabs(got[rows][k] - row[2 + k]) / fabs(got[0][k]));
+	fclose(file);
+	assert_int_equal(rows, 9);
+	return worst;
+}
+
+/* E of the coefficients against E_sh9 of the table, over the table's. */
+static double against_irradiance(const char *name, const double (*got)[3])
+{
+	FILE *file = open_shared(name);
+	double row[9], worst = 0;
+
+	assert_non_null(file);
+	while (read_numbers(file, row, 9) == 9) {
+		double e[3];
+
+		sh_irradiance(3, got, row, e);
+		for (int k = 0; k < 3; k++)
+			worst = fmax(worst, fabs(e[k] / row[6 + k] - 1));
+	}
+	fclose(file);
+	return worst;
+}
+
+static void probes(void **state)
+{
+	static const char *const names[] = { "probe_shared", "grace_latlong_512" };
+
+	(void)state;
+	for (int i = 0; i < 2; i++) {
+		double got[9][3], table, irradiance;
+		struct probe probe;
+		char name[128];
+
+		snprintf(name, sizeof name, "reference/probes/%s.exr", names[i]);
+		if (!load(&probe, name, &plain))
+			skip();
+		sh_project(&probe.pixels, 3, got);
+		snprintf(name, sizeof name, "reference/probes/%s_sh9.csv", names[i]);
+		table = against_table(name, (const double (*)[3])got);
+		snprintf(name, sizeof name, "reference/probes/%s_irradiance.csv", names[i]);
+		irradiance = against_irradiance(name, (const double (*)[3])got);
+		printf("# %s: a coefficient off by %.1e of the first, irradiance by %.1e\n", names[i], table,
+		       irradiance);
+		assert_true(table < 1e-6);
+		assert_true(irradiance < 1e-4);
+		unload(&probe);
+	}
+}
+
+/*
+ * Grace Cathedral as published with 7 digits, in its own axes, and in a unit that is
+ * not given: the one that fits best.
+ */
+static void published(void **state)
+{
+	static const double axes[9] = { 0, 0, 1, 0, -1, 0, 1, 0, 0 };
+	FILE *file = open_shared("reference/probes/published_sh9.csv");
+	double got[9][3], want[9][3], worst = 0, product = 0, square = 0;
+	double apart = 0, whole = 0;
+	struct probe probe;
+	char line[512];
+	int rows = 0;
+
+	(void)state;
+	if (!file || !load(&probe, "reference/probes/grace_latlong_512.exr", &plain))
+		skip();
+	sh_project(&probe.pixels, 3, got);
+	sh_rotate(3, axes, (const double (*)[3])got, got);
+	while (fgets(line, sizeof line, file)) {
+		double rgb[3];
+		int l, m;
+
+		if (sscanf(line, "grace_cathedral_7digits,%d,%d,%lf,%lf,%lf", &l, &m, &rgb[0], &rgb[1],
+			   &rgb[2]) == 5) {
+			memcpy(want[l * l + l + m], rgb, sizeof rgb);
+			rows++;
+		}
+	}
+	fclose(file);
+	unload(&probe);
+	assert_int_equal(rows, 9);
+	for (int i = 0; i < 27; i++) {
+		product += got[i / 3][i % 3] * want[i / 3][i % 3];
+		square += got[i / 3][i % 3] * got[i / 3][i % 3];
+	}
+	for (int i = 0; i < 27; i++) {
+		const double d = product / square * got[i / 3][i % 3] - want[i / 3][i % 3];
+
+		apart += d * d;
+		whole += want[i / 3][i % 3] * want[i / 3][i % 3];
+		worst = fmax(worst, fabs(d) / want[0][0]); /* red's first is the largest */
+	}
+	printf("# Grace Cathedral as published, times %.3f: root of the squares apart %.2f %%, worst %.2f %% of "
+	       "the largest\n", product / square, 100 * sqrt(apart / whole), 100 * worst);
+	assert_true(sqrt(apart / whole) < 0.005);
+	assert_true(worst < 0.006);
+}
+
+/* A heading is a turn about +Y, half of the sky is half of it, and one radiance has one band. */
+static void environments(void **state)
+{
+	const struct scene_environment turned = { .kind = SCENE_ENVIRONMENT_IMAGE, .scale = 1,
+						  .heading_rad = 0.7f };
+	const double h = (double)0.7f;
+	const double rotation[9] = { cos(h), 0, sin(h), 0, 1, 0, -sin(h), 0, cos(h) };
+	double a[SH_COUNT_MAX][3], b[SH_COUNT_MAX][3], worst = 0;
+	struct environment_pixels sky = { .constant = { 1, 2, 4 } };
+	struct probe probe, other;
+
+	(void)state;
+	sh_project(&sky, SH_ORDER_MAX, a);
+	for (int i = 0; i < SH_COUNT_MAX; i++)
+		assert_true(fabs(a[i][2] - (i ? 0 : 4 * sqrt(4 * M_PI))) < 1e-12);
+	/* upper half: band 0 halved, band 1 up 3/4 of that of 2 cos */
+	sky.upper_only = true;
+	sh_project(&sky, SH_ORDER_MAX, a);
+	assert_true(fabs(a[0][0] - sqrt(M_PI)) < 1e-12);
+	assert_true(fabs(a[1][0] - sqrt(3 / (4 * M_PI)) * M_PI) < 1e-12);
+	for (int i = 2; i < 9; i++)
+		assert_true(fabs(a[i][0]) < 1e-12); /* band 2 and the rest of band 1: even about the horizon */
+	if (!load(&probe, "reference/probes/probe_shared.exr", &plain) ||
+	    !load(&other, "reference/probes/probe_shared.exr", &turned))
+		skip();
+	sh_project(&probe.pixels, 5, a);
+	sh_rotate(5, rotation, (const double (*)[3])a, a);
+	sh_project(&other.pixels, 5, b);
+	for (int i = 0; i < 25; i++)
+		worst = fmax(worst, fabs(a[i][0] - b[i][0]));
+	printf("# heading against a turn of the coefficients, order 5: off by %.1e\n", worst);
+	assert_true(worst < 1e-9);
+	unload(&probe);
+	unload(&other);
+}
+
+/* All in one pixel: the coefficients are the basis there; the reconstruction goes below 0. */
+static void one_bright_pixel(void **state)
+{
+	struct environment_pixels sun = { .width = 64, .height = 32 };
+	double got[SH_COUNT_MAX][3], want[SH_COUNT_MAX], lowest = 0, worst = 0;
+	const double v = 5.5 / 32, p = 2 * M_PI * (40.5 / 64 - 0.5);
+	const double d[3] = { sin(M_PI * v) * cos(p), cos(M_PI * v), sin(M_PI * v) * sin(p) };
+	const double solid = (cos(M_PI * 5 / 32) - cos(M_PI * 6 / 32)) * 2 * M_PI / 64;
+	float *rgb = calloc(64 * 32 * 3, sizeof *rgb);
+
+	(void)state;
+	for (int k = 0; k < 3; k++)
+		rgb[3 * (5 * 64 + 40) + k] = 1e6f;
+	sun.rgb = rgb;
+	sh_project(&sun, SH_ORDER_MAX, got);
+	sh_basis(SH_ORDER_MAX, d, want);
+	for (int i = 0; i < SH_COUNT_MAX; i++)
+		worst = fmax(worst, fabs(got[i][0] / (1e6 * solid) - want[i]));
+	for (double deg = 0; deg < 360; deg++) {
+		const double to[3] = { cos(deg * M_PI / 180), sin(deg * M_PI / 180), 0 };
+		double l[3];
+
+		sh_radiance(SH_ORDER_MAX, (const double (*)[3])got, to, l);
+		lowest = fmin(lowest, l[0]);
+	}
+	assert_true(worst < 1e-9);
+	assert_true(lowest < 0);
+	free(rgb);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(basis),	cmocka_unit_test(turns),     cmocka_unit_test(probes),
+		cmocka_unit_test(published),    cmocka_unit_test(environments), cmocka_unit_test(one_bright_pixel),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
