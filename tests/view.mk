@@ -44,8 +44,8 @@ tests_accuracy_test_sky_LDADD = $(VIEW_TEST_LIBS)
 
 check_PROGRAMS += tests/accuracy/test_sh
 TESTS += tests/accuracy/test_sh
-tests_accuracy_test_sh_SOURCES = tests/accuracy/test_sh.c tests/unit/unit.h tests/unit/shared.h
-tests_accuracy_test_sh_CFLAGS = $(TEST_CFLAGS)
+tests_accuracy_test_sh_SOURCES = tests/accuracy/test_sh.c tests/unit/unit.h tests/unit/gl.h tests/unit/shared.h
+tests_accuracy_test_sh_CFLAGS = $(VIEW_TEST_CFLAGS)
 tests_accuracy_test_sh_LDADD = $(VIEW_TEST_LIBS)
 
 check_PROGRAMS += tests/accuracy/test_tone

@@ -150,21 +150,38 @@ void sh_radiance(int order, const double (*in)[3], const double direction[3], do
 			out[k] += in[i][k] * basis[i];
 }
 
-void sh_rotate(int order, const double rotation[9], const double (*in)[3], double (*out)[3])
+void sh_rotation(int order, const double rotation[9], double *matrix)
 {
 	const double *r = rotation;
-	double sum[SH_COUNT_MAX][3] = { { 0 } }, basis[SH_COUNT_MAX];
+	double to[SH_COUNT_MAX], from[SH_COUNT_MAX];
 
+	memset(matrix, 0, SH_ROTATION_MAX * sizeof *matrix);
 	for (int i = 0; i < HEIGHTS * AROUND; i++) {
-		double d[3], from[3], value[3], weight = node(i, d);
+		double d[3], before[3], weight = node(i, d), *at = matrix;
 
 		/* what comes from d came from R^T d */
 		for (int k = 0; k < 3; k++)
-			from[k] = r[k] * d[0] + r[3 + k] * d[1] + r[6 + k] * d[2];
-		sh_radiance(order, in, from, value);
-		sh_basis(order, d, basis);
-		add(order * order, basis, value, weight, sum);
+			before[k] = r[k] * d[0] + r[3 + k] * d[1] + r[6 + k] * d[2];
+		sh_basis(order, d, to);
+		sh_basis(order, before, from);
+		for (int l = 0; l < order; l++)
+			for (int row = l * l; row < (l + 1) * (l + 1); row++)
+				for (int column = l * l; column < (l + 1) * (l + 1); column++)
+					*at++ += weight * to[row] * from[column];
 	}
+}
+
+void sh_rotate(int order, const double rotation[9], const double (*in)[3], double (*out)[3])
+{
+	double matrix[SH_ROTATION_MAX], sum[SH_COUNT_MAX][3] = { { 0 } };
+	const double *at = matrix;
+
+	sh_rotation(order, rotation, matrix);
+	for (int l = 0; l < order; l++)
+		for (int row = l * l; row < (l + 1) * (l + 1); row++)
+			for (int column = l * l; column < (l + 1) * (l + 1); column++, at++)
+				for (int k = 0; k < 3; k++)
+					sum[row][k] += *at * in[column][k];
 	memcpy(out, sum, (size_t)(order * order) * sizeof *out);
 }
 

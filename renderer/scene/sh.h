@@ -27,6 +27,12 @@ void sh_project(const struct environment_pixels *environment, int order, double 
  * exactly; in and out may be the same.
  */
 void sh_rotate(int order, const double rotation[9], const double (*in)[3], double (*out)[3]);
+/*
+ * The same as a matrix: the bands one after another, each (2l + 1)^2 row major, so that
+ * out = matrix x in; SH_ROTATION_MAX values at most.
+ */
+#define SH_ROTATION_MAX 680
+void sh_rotation(int order, const double rotation[9], double *matrix);
 /* Radiance from there as the coefficients have it: may be below 0, where the light changes fast. */
 void sh_radiance(int order, const double (*in)[3], const double direction[3], double out[3]);
 /*

@@ -7,6 +7,7 @@ RENDERER_SOURCES += \
 	renderer/view/backdrop.c renderer/view/backdrop.h \
 	renderer/view/blocks.h \
 	renderer/view/emissive.c renderer/view/emissive.h \
+	renderer/view/env_sh.c renderer/view/env_sh.h \
 	renderer/view/eyes.c renderer/view/eyes.h \
 	renderer/view/gbuffer.c renderer/view/gbuffer.h \
 	renderer/view/maps.c renderer/view/maps.h \
@@ -17,6 +18,8 @@ RENDERER_SOURCES += \
 	renderer/view/shadow.c renderer/view/shadow.h
 SHADERS += \
 	renderer/shaders/backdrop.glsl \
+	renderer/shaders/env_sh.glsl renderer/shaders/env_sh_bands.comp \
+	renderer/shaders/env_sh_rows.comp renderer/shaders/env_sh_turn.comp \
 	renderer/shaders/depth.vert renderer/shaders/gbuffer.frag \
 	renderer/shaders/gi_none.glsl renderer/shaders/lamp.glsl \
 	renderer/shaders/lamp_shadow.glsl renderer/shaders/medium.glsl \

@@ -6,8 +6,12 @@
 #include "base/result.h"
 #include "renderer/image/image.h"
 #include "renderer/scene/sh.h"
+#include "renderer/view/env_sh.h"
+#include "tests/unit/gl.h"
 #include "tests/unit/shared.h"
 #include "tests/unit/unit.h"
+
+#include <epoxy/gl.h>
 
 /* Numbers of the next line that begins with one; 0 at the end. */
 static int read_numbers(FILE *file, double *out, int most)
@@ -298,12 +302,134 @@ static void one_bright_pixel(void **state)
 	free(rgb);
 }
 
+/* The texture that the backdrop has, too. */
+static unsigned texture_of(const struct environment_pixels *pixels)
+{
+	unsigned texture;
+
+	glCreateTextures(GL_TEXTURE_2D, 1, &texture);
+	glTextureStorage2D(texture, 1, GL_RGBA32F, pixels->width, pixels->height);
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+	glTextureSubImage2D(texture, 0, 0, 0, pixels->width, pixels->height, GL_RGB, GL_FLOAT, pixels->rgb);
+	return texture;
+}
+
+/* Worst difference of the GPU's coefficients from the CPU's, over the first. */
+static double gpu_against_cpu(const struct environment_pixels *pixels, int order, const double *rotation)
+{
+	double want[SH_COUNT_MAX][3], got[SH_COUNT_MAX][3], worst = 0;
+	unsigned texture = texture_of(pixels);
+	struct env_sh *gpu;
+
+	assert_int_equal(env_sh_create(&gpu, pixels, order), GR_OK);
+	if (rotation)
+		env_sh_turn(gpu, rotation);
+	env_sh_project(gpu, texture);
+	env_sh_read(gpu, got);
+	sh_project(pixels, order, want);
+	if (rotation)
+		sh_rotate(order, rotation, (const double (*)[3])want, want);
+	for (int i = 0; i < order * order; i++)
+		for (int k = 0; k < 3; k++)
+			worst = fmax(worst, fabs(got[i][k] - want[i][k]) / want[0][k]);
+	env_sh_destroy(&gpu);
+	glDeleteTextures(1, &texture);
+	assert_int_equal(glGetError(), GL_NO_ERROR);
+	return worst;
+}
+
+static void on_the_gpu(void **state)
+{
+	static const double turn[9] = { 0.36, 0.48, -0.8, -0.8, 0.6, 0, 0.48, 0.64, 0.6 };
+	const struct scene_environment turned = { .kind = SCENE_ENVIRONMENT_IMAGE, .scale = 1,
+						  .heading_rad = 0.7f, .upper_only = true };
+	struct probe probe;
+	double worst = 0;
+
+	(void)state;
+	if (!load(&probe, "reference/probes/grace_latlong_512.exr", &turned))
+		skip();
+	for (int order = 2; order <= SH_ORDER_MAX; order += 3)
+		worst = fmax(worst, gpu_against_cpu(&probe.pixels, order, order > 2 ? turn : NULL));
+	unload(&probe);
+	printf("# Grace Cathedral on the GPU, orders 2, 5, 8, turned: a coefficient off by %.1e of the first\n",
+	       worst);
+	assert_true(worst < 3e-6);
+}
+
+/* Sides that no group divides, a horizon within a row, and a sun in one pixel. */
+static void odd_pictures(void **state)
+{
+	static const int sizes[][2] = { { 1, 1 }, { 7, 5 }, { 33, 17 }, { 130, 65 } };
+	struct unit_random random = unit_random_start("odd pictures");
+	double worst = 0;
+
+	(void)state;
+	for (int s = 0; s < 4; s++)
+		for (int upper = 0; upper < 2; upper++) {
+			struct environment_pixels pixels = { .width = sizes[s][0], .height = sizes[s][1],
+							     .upper_only = upper };
+			const int count = 3 * pixels.width * pixels.height;
+			float *rgb = malloc(sizeof *rgb * (size_t)count);
+
+			for (int i = 0; i < count; i++)
+				rgb[i] = (float)unit_random_range(&random, 0, 1);
+			for (int k = 0; k < 3; k++) /* in the upper half */
+				rgb[3 * (pixels.height / 4 * pixels.width + pixels.width / 2) + k] = 1e6f;
+			pixels.rgb = rgb;
+			worst = fmax(worst, gpu_against_cpu(&pixels, SH_ORDER_MAX, NULL));
+			free(rgb);
+		}
+	printf("# odd pictures on the GPU: a coefficient off by %.1e of the first\n", worst);
+	assert_true(worst < 1e-5);
+}
+
+/* A figure of speed, and no test of it. */
+static void speed(void **state)
+{
+	struct environment_pixels pixels = { .width = 1024, .height = 512 };
+	float *rgb = calloc(3 * 1024 * 512, sizeof *rgb);
+	struct timespec from, to;
+	struct env_sh *gpu;
+	unsigned texture;
+
+	(void)state;
+	pixels.rgb = rgb;
+	texture = texture_of(&pixels);
+	assert_int_equal(env_sh_create(&gpu, &pixels, 5), GR_OK);
+	for (int i = 0; i < 12; i++) {
+		if (i == 2) {
+			glFinish();
+			clock_gettime(CLOCK_MONOTONIC, &from);
+		}
+		env_sh_project(gpu, texture);
+	}
+	glFinish();
+	clock_gettime(CLOCK_MONOTONIC, &to);
+	printf("# 1024 x 512 pixels, order 5: %.2f ms\n",
+	       ((double)(to.tv_sec - from.tv_sec) * 1e3 + (double)(to.tv_nsec - from.tv_nsec) / 1e6) / 10);
+	env_sh_destroy(&gpu);
+	glDeleteTextures(1, &texture);
+	free(rgb);
+}
+
 int main(void)
 {
+	const struct CMUnitTest gpu[] = {
+		cmocka_unit_test(on_the_gpu), cmocka_unit_test(odd_pictures), cmocka_unit_test(speed),
+	};
+	struct target *target;
+	int failed;
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(basis),	cmocka_unit_test(turns),     cmocka_unit_test(probes),
 		cmocka_unit_test(published),    cmocka_unit_test(environments), cmocka_unit_test(one_bright_pixel),
 	};
 
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	failed = cmocka_run_group_tests(tests, NULL, NULL);
+	if (failed)
+		return failed;
+	target = gl_target_or_skip(16, 16);
+	failed = cmocka_run_group_tests(gpu, NULL, NULL);
+	target_destroy(&target);
+	return failed;
 }
