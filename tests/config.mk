@@ -52,7 +52,8 @@ EXTRA_DIST += \
 	tests/fuzz/corpus/layout/full.cave \
 	tests/fuzz/corpus/layout/faults.cave \
 	tests/fuzz/corpus/scene/faults.scene \
-	tests/fuzz/corpus/scene/full.scene
+	tests/fuzz/corpus/scene/full.scene \
+	tests/fuzz/corpus/scene/sky.scene
 if FUZZERS
 check_PROGRAMS += tests/fuzz/fuzz_layout tests/fuzz/fuzz_scene_file
 endif

@@ -78,9 +78,13 @@ tests_unit_test_surfaces_CFLAGS = $(GL_TEST_CFLAGS)
 tests_unit_test_surfaces_LDADD = $(GL_TEST_LIBS)
 
 if FUZZERS
-noinst_PROGRAMS += tests/fuzz/fuzz_brdf tests/fuzz/fuzz_exr tests/fuzz/fuzz_glb tests/fuzz/fuzz_scene_block \
+noinst_PROGRAMS += tests/fuzz/fuzz_projector tests/fuzz/fuzz_brdf tests/fuzz/fuzz_exr tests/fuzz/fuzz_glb tests/fuzz/fuzz_scene_block \
 	tests/fuzz/fuzz_texture
 endif
+tests_fuzz_fuzz_projector_SOURCES = tests/fuzz/fuzz_projector.c
+tests_fuzz_fuzz_projector_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS)
+tests_fuzz_fuzz_projector_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_projector_LDADD = $(RENDERER_LIBS)
 tests_fuzz_fuzz_brdf_SOURCES = tests/fuzz/fuzz_brdf.c
 tests_fuzz_fuzz_brdf_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS)
 tests_fuzz_fuzz_brdf_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
@@ -107,6 +111,9 @@ EXTRA_DIST += \
 	tests/fuzz/corpus/brdf/small.brdf \
 	tests/fuzz/corpus/brdf/cut.brdf \
 	tests/fuzz/corpus/exr/zip-float.exr \
+	tests/fuzz/corpus/exr/planes.hdr \
+	tests/fuzz/corpus/exr/runs.hdr \
+	tests/fuzz/corpus/projector/table \
 	tests/fuzz/corpus/glb/image-type.glb \
 	tests/fuzz/corpus/glb/textured.glb \
 	tests/fuzz/corpus/texture/baseline.jpg \

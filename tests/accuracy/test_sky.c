@@ -229,6 +229,22 @@ static double open_ground(const struct sky *sky)
 	return sum;
 }
 
+/* No sun below the horizon, and a warning that says so. */
+static void night(void **state)
+{
+	static const char text[] = "model = \"m.obj\"; environment = { kind = \"sky\"; sun_elevation_deg = -3.0; };";
+	struct gr_diag diag = { 0 };
+	struct scene_file *file;
+
+	(void)state;
+	assert_int_equal(scene_file_parse(text, strlen(text), "sky.cfg", &file, &diag), GR_OK);
+	assert_int_equal(file->lamp_count, 0);
+	assert_int_equal(diag.warnings, 1);
+	assert_non_null(strstr(diag.items[0].text, "the sun is 3.0 degrees below the horizon"));
+	scene_file_destroy(&file);
+	gr_diag_finish(&diag);
+}
+
 /* From a scene file: the sun where the time says, as a lamp, and the sky without it. */
 static void from_a_file(void **state)
 {
@@ -275,6 +291,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(times),    cmocka_unit_test(positions), cmocka_unit_test(sunlight),
 		cmocka_unit_test(pictures), cmocka_unit_test(any_sky),   cmocka_unit_test(from_a_file),
+		cmocka_unit_test(night),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -118,6 +118,12 @@ static const struct fault faults[] = {
 	  "127.0.0.1 port 5001 is taken by node \"n1\"; give each its own", 1 },
 	{ "port = 5003", "port = 5000", "port = 5000; } );\n	}", "walls[1].nodes[0].port",
 	  "127.0.0.1 port 5000 is taken by the master; give each its own", 1 },
+	{ "port = 5003", "port = 5003; projector = { black = [0.1, 0.1, 0.1]; gain = [1.0, 0.1, 1.0]; }",
+	  "gain", "walls[1].nodes[0].projector.gain", "0.1 is no more than black, which is 0.1", 1 },
+	{ "port = 5003", "port = 5003; target = \"window\"; projector = { depth = \"float\"; }", "depth",
+	  "walls[1].nodes[0].projector.depth", "\"float\" is for target = \"headless\"", 1 },
+	{ "port = 5003", "port = 5003; projector = { table = \"t.csv\"; gamma = [2.0, 2.0, 2.0]; }", "gamma",
+	  "walls[1].nodes[0].projector.gamma", "not used: the table says it", 0 },
 	{ "part = [0.5, 0.0, 1.0, 1.0]", "part = [0.4, 0.0, 1.0, 1.0]", "part = [0.4",
 	  "walls[0].nodes[1].part", "overlaps the part of node \"n1\"", 1 },
 	{ "part = [0.5, 0.0, 1.0, 1.0]", "part = [1.0, 0.0, 0.5, 1.0]", "part = [1.0",
@@ -416,9 +422,10 @@ static const char full[] =
 	"	heading_deg = 7.3; pitch_deg = -11.7; roll_deg = 3.3; pixels = [1000, 800];\n"
 	"	eyes = \"eye-per-node\"; nodes = (\n"
 	"	{ name = \"a\"; address = \"2001:db8::1\"; eye = \"left\"; port = 2000; target = \"window\";\n"
-	"	  display = \":7.1\"; monitor = 3; gpu = 2; },\n"
+	"	  display = \":7.1\"; monitor = 3; gpu = 2; projector = { gain = [1.1, 1.0, 0.9]; dither = true;\n"
+	"	  black = [0.01, 0.02, 0.03]; gamma = [2.1, 2.2, 2.3]; depth = \"10\"; }; },\n"
 	"	{ name = \"b\"; address = \"2001:db8::2\"; eye = \"right\"; port = 2000;\n"
-	"	  target = \"fullscreen\"; part = [0.0, 0.0, 0.3, 1.0]; },\n"
+	"	  target = \"fullscreen\"; part = [0.0, 0.0, 0.3, 1.0]; projector = { table = \"b.csv\"; }; },\n"
 	"	{ name = \"c\"; address = \"2001:db8::3\"; eye = \"right\"; part = [0.3, 0.0, 1.0, 1.0]; } ); },\n"
 	"	{ name = \"v\"; center = [0.0, 1.3, 2.2]; size = [3.0, 2.0]; heading_deg = 180; pixels = [640, 480];\n"
 	"	eyes = \"top-bottom\"; nodes = ( { address = \"2001:db8::4\"; eyes = \"side-by-side\"; } ); } );\n"
