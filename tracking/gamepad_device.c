@@ -38,12 +38,17 @@ static int describe(struct gamepad *g, const struct track_hid_node *node, char *
 {
 	uint8_t bytes[TRACK_HID_DESCRIPTOR_MOST];
 	const size_t len = track_hid_descriptor(node, bytes, sizeof bytes);
+	int r;
 
 	if (!len) {
 		snprintf(why, size, "its report descriptor cannot be read");
 		return GR_ERR_IO;
 	}
-	return track_hid_parse(bytes, len, g->vendor && g->product, &g->pads, why, size);
+	r = track_hid_parse(bytes, len, false, &g->pads, why, size);
+	/* One that somebody named may call itself something else, and all that it has counts. */
+	if (r < 0 && g->vendor && g->product)
+		r = track_hid_parse(bytes, len, true, &g->pads, why, size);
+	return r;
 }
 
 /* Moves those that are gamepads to the front. What one that should be is not, goes to `wrong`. */

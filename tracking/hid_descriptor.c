@@ -148,8 +148,12 @@ static int end_collection(struct parser *p)
 {
 	if (!p->depth)
 		return refuse(p, "ends a collection that nothing began");
-	if (--p->depth == 0)
-		p->pad = -1;
+	if (--p->depth > 0 || p->pad < 0)
+		return GR_OK;
+	/* A collection without anything of a gamepad's is none. */
+	if (!p->out->has_buttons[p->pad] && !p->out->has_axes[p->pad])
+		p->out->pad_count--;
+	p->pad = -1;
 	return GR_OK;
 }
 

@@ -24,6 +24,9 @@
 #define GAMEPAD 5
 #define MULTI_AXIS 8
 
+/* A joystick of one field as wide as said before. */
+#define ONE_BUTTON APPLICATION(JOYSTICK), PAGE(9), USAGE(1), VARIABLE, END
+
 /* Of a DualShock 4 by USB, without its feature reports. */
 #define DUALSHOCK4_DESCRIPTOR                                                                       \
 	APPLICATION(GAMEPAD), REPORT(1), USAGE(0x30), USAGE(0x31), USAGE(0x32), USAGE(0x35),        \

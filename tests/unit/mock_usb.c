@@ -312,6 +312,13 @@ bool mock_usb_claimed(struct mock_usb *m)
 	return claimed;
 }
 
+void mock_usb_let_go(struct mock_usb *m)
+{
+	pthread_mutex_lock(&m->lock);
+	m->params.busy = false;
+	pthread_mutex_unlock(&m->lock);
+}
+
 unsigned mock_usb_reads(struct mock_usb *m)
 {
 	unsigned count = 0;

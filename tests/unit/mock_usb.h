@@ -39,6 +39,8 @@ void mock_usb_push_error(struct mock_usb *usb, int error);
 /* Bytes that no read has taken yet. */
 size_t mock_usb_waiting(struct mock_usb *usb);
 bool mock_usb_claimed(struct mock_usb *usb);
+/* The other program that had it has ended. */
+void mock_usb_let_go(struct mock_usb *usb);
 /* Reads that are with the kernel. */
 unsigned mock_usb_reads(struct mock_usb *usb);
 int mock_usb_configuration(struct mock_usb *usb);

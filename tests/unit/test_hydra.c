@@ -231,6 +231,22 @@ static void a_thread_of_its_own(void **state)
 	await(f, TRACK_ABSENT);
 }
 
+/* It listens for a quarter of a second before it switches the mode: the end does not wait for that. */
+static void its_thread_ends_soon(void **state)
+{
+	struct fixture *f = *state;
+	int64_t begin_ns;
+
+	mock_hydra_plug(&f->hydra, bed, 0, 1);
+	assert_int_equal(track_device_start(f->device), GR_OK);
+	poll(NULL, 0, 50);
+	begin_ns = gr_clock_now(&gr_clock_monotonic);
+	track_device_destroy(&f->device);
+	printf("# its thread ended %.1f ms after it was told to\n",
+	       (double)(gr_clock_now(&gr_clock_monotonic) - begin_ns) * 1e-6);
+	assert_int_equal(mock_hydra_mode(&f->hydra), MOCK_HYDRA_GAMEPAD);
+}
+
 /* Left, then right of the same report, and each report the last one's successor. */
 static void take_in_order(struct fixture *f, int *read)
 {
@@ -346,6 +362,7 @@ int main(int argc, char **argv)
 		TEST(unplugged_and_plugged_again),
 		TEST(udev_tells_of_it),
 		TEST(a_thread_of_its_own),
+		TEST(its_thread_ends_soon),
 		TEST(of_two_the_second_is_taken),
 		TEST(none_is_lost_at_1000_a_second),
 		TEST(denied_names_the_rule),

@@ -87,6 +87,11 @@ static void one_that_another_program_has(void **state)
 	create_model(f, TRACK_POLHEMUS_MODEL_LIBERTY);
 	until(f, TRACK_BUSY);
 	assert_why(f, "/dev/bus/usb/001/002: another program has it; end that one");
+	assert_int_equal(counters_of(f).opened, 0);
+	/* Which ends: it is taken up without anybody plugging anything. */
+	mock_usb_let_go(f->mock.usb);
+	until(f, TRACK_RUNNING);
+	assert_true(mock_usb_claimed(f->mock.usb));
 }
 
 static void one_that_is_something_else(void **state)
