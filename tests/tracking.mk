@@ -1,7 +1,7 @@
 # tests of tracking
 TRACKING_TESTS = tests/unit/test_tracking tests/unit/test_sim tests/unit/test_replay \
 	tests/unit/test_bind tests/unit/test_device tests/unit/test_filter \
-	tests/unit/test_hydra_decode
+	tests/unit/test_hydra_decode tests/unit/test_align tests/unit/test_lever
 check_PROGRAMS += $(TRACKING_TESTS)
 TESTS += $(TRACKING_TESTS)
 
@@ -24,6 +24,15 @@ tests_unit_test_bind_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
 tests_unit_test_device_SOURCES = tests/unit/test_device.c tests/unit/fake_device.h tests/unit/unit.h
 tests_unit_test_device_CFLAGS = $(TEST_CFLAGS) -pthread
 tests_unit_test_device_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
+
+tests_unit_test_align_SOURCES = tests/unit/test_align.c tests/unit/align_room.h tests/unit/unit.h
+tests_unit_test_align_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_align_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
+
+tests_unit_test_lever_SOURCES = tests/unit/test_lever.c tests/unit/align_room.h tests/unit/unit.h \
+	tests/unit/unit_config.h
+tests_unit_test_lever_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_lever_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
 
 tests_unit_test_hydra_decode_SOURCES = tests/unit/test_hydra_decode.c tests/unit/hydra_bytes.h tests/unit/unit.h
 tests_unit_test_hydra_decode_CFLAGS = $(TEST_CFLAGS)
@@ -71,10 +80,18 @@ EXTRA_DIST += \
 	tests/fuzz/corpus/hydra/short \
 	tests/fuzz/fuzz_replay.c \
 	tests/fuzz/corpus/replay/bad.log \
-	tests/fuzz/corpus/replay/good.log
+	tests/fuzz/corpus/replay/good.log \
+	tests/fuzz/fuzz_survey.c \
+	tests/fuzz/corpus/survey/kept \
+	tests/fuzz/corpus/survey/points \
+	tests/fuzz/corpus/survey/wrong
 
 if FUZZERS
-noinst_PROGRAMS += tests/fuzz/fuzz_replay tests/fuzz/fuzz_hydra
+noinst_PROGRAMS += tests/fuzz/fuzz_replay tests/fuzz/fuzz_hydra tests/fuzz/fuzz_survey
+tests_fuzz_fuzz_survey_SOURCES = tests/fuzz/fuzz_survey.c
+tests_fuzz_fuzz_survey_CFLAGS = $(TEST_CFLAGS)
+tests_fuzz_fuzz_survey_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer
+tests_fuzz_fuzz_survey_LDADD = $(TRACKING_LIBS)
 tests_fuzz_fuzz_hydra_SOURCES = tests/fuzz/fuzz_hydra.c tests/unit/hydra_bytes.h
 tests_fuzz_fuzz_hydra_CFLAGS = $(TEST_CFLAGS)
 tests_fuzz_fuzz_hydra_LDFLAGS = $(AM_LDFLAGS) -fsanitize=fuzzer

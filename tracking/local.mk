@@ -1,5 +1,7 @@
 noinst_LIBRARIES += tracking/libgtracking.a
 tracking_libgtracking_a_SOURCES = \
+	tracking/align.c tracking/align.h tracking/align_private.h \
+	tracking/align_explain.c tracking/align_robust.c \
 	tracking/bind.c tracking/bind.h tracking/bind_names.c \
 	tracking/device.c tracking/device.h tracking/device_private.h \
 	tracking/device_clock.c tracking/device_clock.h \
@@ -19,12 +21,14 @@ tracking_libgtracking_a_SOURCES = \
 	tracking/history.c \
 	tracking/hotplug.c tracking/hotplug.h \
 	tracking/hydra.h tracking/hydra_decode.c tracking/hydra_device.c \
+	tracking/lever.c tracking/lever.h \
 	tracking/liberty.c tracking/liberty.h \
 	tracking/imu.c tracking/imu.h \
 	tracking/polhemus.h tracking/polhemus_private.h tracking/polhemus_device.c tracking/polhemus_find.c \
 	tracking/polhemus_liberty.c tracking/polhemus_viper.c \
 	tracking/polhemus_reports.c tracking/polhemus_reports.h \
 	tracking/polhemus_stream.c tracking/polhemus_stream.h \
+	tracking/dmat3.c tracking/dmat3.h \
 	tracking/net.c tracking/net.h \
 	tracking/replay.c tracking/replay.h \
 	tracking/replay_parse.c \
@@ -35,6 +39,8 @@ tracking_libgtracking_a_SOURCES = \
 	tracking/sony_report.c \
 	tracking/source.c tracking/source.h \
 	tracking/spacemouse.h tracking/spacemouse_decode.c tracking/spacemouse_device.c \
+	tracking/still.c tracking/still.h \
+	tracking/survey.c tracking/survey.h \
 	tracking/text.c tracking/text.h \
 	tracking/usb.c tracking/usb.h tracking/usb_private.h tracking/usb_pipe.c \
 	tracking/viper.c tracking/viper.h \
