@@ -12,9 +12,11 @@ config_libgconfig_a_SOURCES = \
 	config/layout_check_tracker_pads.c \
 	config/layout_check_trackers.c \
 	config/layout_check_walls.c \
+	config/layout_edit.c config/layout_edit.h \
 	config/layout_geometry.c config/layout_geometry.h \
 	config/layout_items.c \
 	config/layout_options.c config/layout_options.h \
+	config/layout_replace.c \
 	config/layout_tracker.c \
 	config/layout_tracker_network.c \
 	config/layout_tracker_options.c \
@@ -30,7 +32,9 @@ config_libgconfig_a_SOURCES = \
 	config/scene_sky.c config/scene_sky.h \
 	config/scene_options.c config/scene_options.h \
 	config/scene_write.c \
-	config/suggest.c config/suggest.h
+	config/setting_place.c config/setting_place.h \
+	config/suggest.c config/suggest.h \
+	config/text_changes.c config/text_changes.h
 config_libgconfig_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(LIBCONFIG_CFLAGS) $(SODIUM_CFLAGS)
 
 # Prints the option tables for the docs: "make docs-options" after changing one.

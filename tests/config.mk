@@ -25,6 +25,12 @@ tests_unit_test_layout_trackers_SOURCES = tests/unit/test_layout_trackers.c $(LA
 tests_unit_test_layout_trackers_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_layout_trackers_LDADD = $(CONFIG_LIBS) $(CMOCKA_LIBS)
 
+check_PROGRAMS += tests/unit/test_layout_edit
+TESTS += tests/unit/test_layout_edit
+tests_unit_test_layout_edit_SOURCES = tests/unit/test_layout_edit.c $(LAYOUT_TEXT_SOURCES)
+tests_unit_test_layout_edit_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_layout_edit_LDADD = $(CONFIG_LIBS) $(CMOCKA_LIBS)
+
 check_PROGRAMS += tests/unit/test_layout_networks
 TESTS += tests/unit/test_layout_networks
 tests_unit_test_layout_networks_SOURCES = tests/unit/test_layout_networks.c $(LAYOUT_TEXT_SOURCES)
@@ -49,6 +55,7 @@ tests_unit_test_scene_file_LDADD = $(CONFIG_LIBS) $(CMOCKA_LIBS)
 # where CORPUS is a copy of tests/fuzz/corpus/layout. What crashes stays there.
 EXTRA_DIST += \
 	tests/fuzz/corpus/layout/cave4.cave \
+	tests/fuzz/corpus/layout/devices.cave \
 	tests/fuzz/corpus/layout/full.cave \
 	tests/fuzz/corpus/layout/faults.cave \
 	tests/fuzz/corpus/scene/faults.scene \

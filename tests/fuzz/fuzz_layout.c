@@ -1,9 +1,11 @@
 /*
  * libFuzzer target: any bytes are a layout or are refused with a message; what
- * is taken writes, reads back and hashes to the same.
+ * is taken writes, reads back and hashes to the same, and takes a calibration
+ * or says that it cannot.
  */
 #include "base/result.h"
 #include "config/layout.h"
+#include "config/layout_edit.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -43,6 +45,30 @@ static void check(const struct layout *layout, struct gr_diag *diag)
 	free(key);
 }
 
+/* layout_edit itself reads what it makes, and compares. */
+static void calibrate(const struct layout *layout, const char *text, size_t len)
+{
+	struct layout_edit edit = { .position = { 1, -2, 0.5 }, .angles_deg = { 10, 20, -30 }, .note = "now */" };
+
+	for (edit.tracker = 0; edit.tracker < layout->tracker_count; edit.tracker++) {
+		struct gr_diag diag = { 0 };
+		size_t out_len = 0;
+		char *out;
+		int result;
+
+		if (!layout_tracker_is_device(&layout->trackers[edit.tracker]))
+			continue;
+		edit.what = edit.what == LAYOUT_EDIT_BASE ? LAYOUT_EDIT_OFFSET : LAYOUT_EDIT_BASE;
+		edit.scale = edit.tracker % 2 ? 0.0254 : 0;
+		result = layout_edit(text, len, layout->path, &edit, &out, &out_len, &diag);
+		if ((result == GR_OK) != !!out || (result == GR_OK && strlen(out) != out_len) ||
+		    (result < 0 && !diag.errors))
+			abort();
+		free(out);
+		gr_diag_finish(&diag);
+	}
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t len)
 {
 	struct gr_diag diag = { 0 };
@@ -51,8 +77,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t len)
 
 	if ((result == GR_OK) != !!layout || (result == GR_OK) != !diag.errors)
 		abort();
-	if (layout)
+	if (layout) {
 		check(layout, &diag);
+		calibrate(layout, (const char *)bytes, len);
+	}
 	layout_destroy(&layout);
 	gr_diag_finish(&diag);
 	return 0;
