@@ -175,8 +175,11 @@ static void take_report(struct trackers *trackers, size_t i, const struct track_
 	for (size_t k = 0; k < t->of->binding_count; k++) {
 		struct track_binding *binding = &t->bindings[k];
 
-		if (binding->sensor == report->sensor &&
-		    track_bind(binding, &trackers->bodies[binding->body], report, &sample))
+		if (binding->sensor != report->sensor)
+			continue;
+		t->sensors[k].reports++;
+		t->sensors[k].last = *report;
+		if (track_bind(binding, &trackers->bodies[binding->body], report, &sample))
 			take(trackers, i, &sample, now_ns);
 	}
 }

@@ -40,6 +40,11 @@ struct tracker {
 		struct track_sample last; /* as it came, used or not */
 		int64_t arrived_ns;	  /* CLOCK_MONOTONIC */
 	} bodies[TRACK_BODIES];
+	/* What the sensor of each binding said last, in the device's own frame. */
+	struct tracker_sensor {
+		uint64_t reports;
+		struct track_report last;
+	} sensors[LAYOUT_MAX_BINDINGS];
 };
 
 struct trackers {
@@ -70,7 +75,7 @@ void trackers_sample(const struct trackers *trackers, int64_t photon_ns,
 		     struct master_input *input);
 /*
  * An array: for each tracker its state, rate, age, drop-outs, faults; with
- * `poses` what it said last of each body, too. And one, "filters", of head and
+ * `poses` what it said last of each body, and of each sensor, too. And one, "filters", of head and
  * wand: samples that the gate refused, times begun anew.
  */
 void trackers_write_json(const struct trackers *trackers, struct json *json, const char *key,

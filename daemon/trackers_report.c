@@ -63,6 +63,33 @@ static void write_poses(struct json *json, const struct tracker *t, int64_t now_
 	json_close(json, ']');
 }
 
+/* As a calibration needs them: not where the layout takes them to be. */
+static void write_sensors(struct json *json, const struct tracker *t, int64_t now_ns)
+{
+	json_open(json, "sensors", '[');
+	for (size_t k = 0; k < t->of->binding_count; k++) {
+		const struct tracker_sensor *s = &t->sensors[k];
+		const struct track_report *r = &s->last;
+
+		json_open(json, NULL, '{');
+		json_string(json, "body", track_body_name(t->bindings[k].body));
+		json_string(json, "sensor", t->device->ops->sensors[t->bindings[k].sensor]);
+		json_u64(json, "reports", s->reports);
+		if (s->reports) {
+			json_f64(json, "age_ms", (double)(now_ns - r->arrived_ns) * 1e-6);
+			json_bool(json, "lost", (r->has & TRACK_LOST) != 0);
+		}
+		if (r->has & TRACK_POSITION)
+			write_numbers(json, "position_m", r->T_base_sensor.p, 3);
+		if (r->has & TRACK_ORIENTATION)
+			write_numbers(json, "orientation", r->T_base_sensor.q, 4);
+		if (r->has & TRACK_BUTTONS)
+			json_u64(json, "buttons", r->buttons);
+		json_close(json, '}');
+	}
+	json_close(json, ']');
+}
+
 static void write_tracker(struct json *json, const struct tracker *t, int64_t now_ns, bool poses)
 {
 	json_open(json, NULL, '{');
@@ -88,6 +115,8 @@ static void write_tracker(struct json *json, const struct tracker *t, int64_t no
 	json_close(json, ']');
 	if (poses)
 		write_poses(json, t, now_ns);
+	if (poses && t->device)
+		write_sensors(json, t, now_ns);
 	json_close(json, '}');
 }
 

@@ -225,6 +225,44 @@ static void a_lost_sensor_holds_and_jumps_back(void **state)
 	assert_int_equal(f->open.all[0].stats.dropouts, 1);
 }
 
+/* As a room has it: on for a moment, back without a jump, and known since when. */
+static void a_moving_head_that_is_lost_goes_back_to_where_it_was_seen(void **state)
+{
+	struct fixture *f = *state;
+	const struct track_filter_params params = track_filter_defaults(TRACK_FILTER_KALMAN);
+	const int64_t lead_ns = 20 * MS;
+	double last = 0, before, most = 0;
+	int64_t seen_ns, last_ns = 0;
+
+	for (int body = 0; body < TRACK_BODIES; body++)
+		track_filter_init(&f->open.history.filters[body], &params);
+	for (int i = 0; i < 250; i++, f->clock.now_ns += PERIOD_NS) {
+		last = 0.5 * i * PERIOD_NS * 1e-9;
+		last_ns = f->clock.now_ns - ZERO_NS - f->tracker.latency_ns;
+		say(f, report(f, 0, (float)last));
+	}
+	sample(f, lead_ns);
+	before = (double)f->input.head.T_room_body.p[0];
+	for (int i = 0; i < 750; i++, f->clock.now_ns += PERIOD_NS) {
+		struct track_report r = report(f, 0, NAN);
+
+		r.has = TRACK_LOST | TRACK_DEVICE_TIME;
+		say(f, r);
+		sample(f, lead_ns);
+		assert_false(f->input.head.tracked);
+		/* No faster than it was. */
+		assert_true(fabs((double)f->input.head.T_room_body.p[0] - before) < 0.6 * PERIOD_NS * 1e-9);
+		before = (double)f->input.head.T_room_body.p[0];
+		most = fmax(most, before - last);
+		assert_true(track_history_seen(&f->open.history, TRACK_HEAD, &seen_ns));
+		assert_int_equal(seen_ns, last_ns);
+	}
+	printf("# lost at 0.5 m/s: %.1f mm on at most, then %.2f mm from where it was seen\n", most * 1e3,
+	       (before - last) * 1e3);
+	assert_true(most > 0.005 && most < 0.05);
+	assert_true(fabs(before - last) < 0.001);
+}
+
 static void silence_is_a_drop_out(void **state)
 {
 	struct fixture *f = *state;
@@ -282,6 +320,9 @@ static void what_is_said_of_it(void **state)
 	assert_non_null(strstr(text, "\"age_ms\":5"));
 	assert_non_null(strstr(text, "\"tracked\":[\"head\"]"));
 	assert_non_null(strstr(text, "\"poses\":[{\"body\":\"head\",\"tracked\":true"));
+	assert_non_null(strstr(text, "\"sensors\":[{\"body\":\"head\",\"sensor\":\"a\",\"reports\":1,\"age_ms\":5,"
+				     "\"lost\":false,\"position_m\":[0.5,1,2],\"orientation\":[0,0,0,1]},"
+				     "{\"body\":\"wand\",\"sensor\":\"b\",\"reports\":0}]"));
 	assert_int_equal(trackers_answer(&f->open, f->clock.now_ns, text, 100, &len), GR_ERR_RANGE);
 }
 
@@ -347,6 +388,7 @@ int main(void)
 		WITH(what_is_hostile_moves_nothing),
 		WITH(signs_of_quaternions_do_not_matter),
 		WITH(a_lost_sensor_holds_and_jumps_back),
+		WITH(a_moving_head_that_is_lost_goes_back_to_where_it_was_seen),
 		WITH(silence_is_a_drop_out),
 		WITH(rate_and_evenness),
 		WITH(what_is_said_of_it),
