@@ -111,6 +111,15 @@ tests_unit_test_network_trackers_SOURCES = tests/unit/test_network_trackers.c te
 tests_unit_test_network_trackers_CFLAGS = $(TEST_CFLAGS) -pthread
 tests_unit_test_network_trackers_LDADD = $(tests_unit_test_trackers_LDADD)
 
+# The command beside a controller that the test plays.
+check_PROGRAMS += tests/unit/test_calibrate_device
+TESTS += tests/unit/test_calibrate_device
+tests_unit_test_calibrate_device_SOURCES = tests/unit/test_calibrate_device.c tests/unit/align_room.h \
+	tests/unit/mock_dtrack.h \
+	tests/unit/net_device.h tests/unit/unit.h tests/unit/unit_config.h
+tests_unit_test_calibrate_device_CFLAGS = $(TEST_CFLAGS) -pthread
+tests_unit_test_calibrate_device_LDADD = $(tests_unit_test_trackers_LDADD)
+
 check_PROGRAMS += tests/unit/test_tracker_devices
 TESTS += tests/unit/test_tracker_devices
 tests_unit_test_tracker_devices_SOURCES = tests/unit/test_tracker_devices.c tests/unit/fake_device.h tests/unit/unit.h

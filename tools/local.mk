@@ -21,6 +21,8 @@ tools_grotto_SOURCES = \
 	tools/grotto.c \
 	tools/bake.c \
 	tools/bench.c \
+	tools/calibrate.c tools/calibrate.h \
+	tools/calibrate_ask.c tools/calibrate_read.c tools/calibrate_solve.c \
 	tools/check.c \
 	tools/demo.c tools/demo.h \
 	tools/demo_plan.c tools/demo_plan.h \

@@ -4,6 +4,7 @@
 #include "config/layout.h"
 #include "daemon/trackers.h"
 #include "tools/ask.h"
+#include "tools/calibrate.h"
 #include "tools/cli.h"
 #include "tools/command.h"
 #include "tools/report.h"
@@ -249,17 +250,20 @@ int command_trackers(int argc, char **argv)
 	};
 	const struct cli_table table = {
 		"grotto trackers [--socket PATH | --layout FILE] [--open] [--watch] [--record "
-		"FILE]",
+		"FILE]\n"
+		"       grotto trackers calibrate --layout FILE [--points FILE | --pivot] ...",
 		"Says what each tracker does: state, rate, evenness, age, drop-outs, battery, "
 		"what\n"
 		"was refused, and where head and wand are. Asks the running master, or opens the\n"
-		"trackers itself.",
+		"trackers itself. calibrate: where a device is in the room; has options of its own.",
 		options, sizeof options / sizeof options[0]
 	};
 	struct layout *layout = NULL;
 	struct gr_diag diag = { 0 };
 	int words, status = GR_EXIT_OK;
 
+	if (argc > 1 && !strcmp(argv[1], "calibrate"))
+		return trackers_calibrate(argc - 1, argv + 1);
 	switch (cli_parse(&table, argc, argv, &words)) {
 	case CLI_HELP: return GR_EXIT_OK;
 	case CLI_WRONG: return GR_EXIT_CONFIG;

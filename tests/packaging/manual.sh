@@ -19,7 +19,7 @@ told_of() {
 	# The text above the options may name those of other programs.
 	printf '%s\n' "$2" | grep -e '^  *-' | grep -o -e '--[a-z][a-z-]*' | sed 's/^--//' |
 		grep -v -x -e help -e version | sort -u > "$tmp/known"
-	awk -v section="${3-}" '/^\.S[sh] / { on = $2 == section } section == "" || on' "$1" |
+	awk -v section="${3-}" '/^\.S[sh] / { on = substr($0, 5) == section } section == "" || on' "$1" |
 		grep -e '^\.It Fl' | grep -o -e 'Fl -[a-z-]*' | sed 's/Fl -//' |
 		grep -v -x -e help -e version -e '' | sort -u > "$tmp/told"
 	for option in $(comm -23 "$tmp/known" "$tmp/told"); do
@@ -40,6 +40,7 @@ if [ -x tools/grotto ]; then
 		grep -q "^\.Ss $command$" docs/man/grotto.1 || fail "grotto.1 does not tell of $command"
 		told_of docs/man/grotto.1 "$(tools/grotto "$command" --help)" "$command"
 	done
+	told_of docs/man/grotto.1 "$(tools/grotto trackers calibrate --help)" "trackers calibrate"
 fi
 
 # The layout of the manual's example is one.
