@@ -111,3 +111,11 @@ tools_bench_packing_SOURCES = \
 tools_bench_packing_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(JSONC_CFLAGS) $(LZO_CFLAGS) $(CODEC_CFLAGS)
 tools_bench_packing_LDADD = tools/libgbench.a tools/libgtools.a $(RECORD_LIBS) $(RENDERER_LIBS) \
 	$(PROTOCOL_LIBS) $(CONFIG_LIBS) $(JSONC_LIBS) $(CODEC_LIBS)
+
+# From a report's arrival to the filtered pose; `make bench-arrival`.
+EXTRA_PROGRAMS += tools/bench-arrival
+bench-arrival: tools/bench-arrival
+tools_bench_arrival_SOURCES = tools/bench/arrival.c
+tools_bench_arrival_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(JSONC_CFLAGS) -pthread
+tools_bench_arrival_LDADD = tools/libgbench.a tools/libgtools.a daemon/libgdaemon.a $(TRACKING_LIBS) \
+	$(CONFIG_LIBS) $(PROTOCOL_LIBS) $(JSONC_LIBS)
