@@ -4,10 +4,12 @@
  *
  *   plug NODE     its nodes are /dev/hidraw NODE and NODE + 1
  *   at X Y Z      mm, in its own axes: where the wands are from now on (left one at -X)
+ *   damage N      N reports, at most 32, of which one bit each is another
  *   unplug
  *
  * The exit status is the program's; SIGTERM and SIGINT are passed on to it.
  */
+#include "tests/unit/hydra_bytes.h"
 #include "tests/unit/mock_hydra.h"
 
 #include <errno.h>
@@ -35,15 +37,29 @@ struct bed {
 	int status; /* of the child; -1: it runs */
 };
 
+/* From far away, so that one that was taken would be seen. */
+static void say_damaged(struct bed *bed, int count)
+{
+	uint8_t bytes[HYDRA_BYTES];
+
+	for (int i = 0; i < count; i++) {
+		hydra_make(bytes, bed->sequence, 2000, 2000, 2000);
+		bytes[6 + i % 44] ^= (uint8_t)(1 << i % 8);
+		mock_hid_push(bed->hydra.reports, bytes, sizeof bytes);
+	}
+}
+
 static void obey(struct bed *bed, const char *line)
 {
-	int node, at[3];
+	int node, count, at[3];
 
 	if (sscanf(line, "plug %d", &node) == 1 && !bed->hydra.plugged) {
 		mock_hydra_finish(&bed->hydra);
 		mock_hydra_plug(&bed->hydra, bed->testbed, node, node + 1);
 	} else if (sscanf(line, "at %d %d %d", &at[0], &at[1], &at[2]) == 3) {
 		memcpy(bed->at, at, sizeof bed->at);
+	} else if (sscanf(line, "damage %d", &count) == 1 && count <= 32 && bed->hydra.plugged) {
+		say_damaged(bed, count);
 	} else if (!strcmp(line, "unplug") && bed->hydra.plugged) {
 		mock_hydra_unplug(&bed->hydra);
 	} else {

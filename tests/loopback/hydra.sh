@@ -45,6 +45,18 @@ grep -q '^    head  *0.200  *1.800  *-*0.000 m' "$dir/trackers.log" || fail "no 
 "$grotto" status --socket "$dir/control" | grep -q '^wands  *hydra  *running ' || fail "grotto status has no line of it"
 echo "ok: the head is where the wand is"
 
+device damage 7
+wait_for 120 tracking '.trackers[0].faults.checksum == 7'
+before=$(field "$dir/status.json" frame)
+wait_for 120 frame_is_past $((before + 5))
+tracking '.head_tracked and (.head_m[0] - 0.2 | fabs) < 0.001 and (.head_m[1] - 1.8 | fabs) < 0.001' ||
+	fail "damaged reports moved the head: $(jq -c .tracking "$dir/status.json")"
+for command in trackers status; do
+	"$grotto" $command --socket "$dir/control" | grep -q '^    refused: 7 checksum$' ||
+		fail "grotto $command does not say what was refused"
+done
+echo "ok: damaged reports are counted and said, and move nothing"
+
 device unplug
 wait_for 120 tracking '.head_tracked == false and .trackers[0].state == "absent" and .trackers[0].dropouts >= 1'
 tracking '(.head_m[0] - 0.2 | fabs) < 0.001 and .head_seen_s_ago > 0' || fail "it does not hold: $(jq -c .tracking "$dir/status.json")"
