@@ -247,9 +247,19 @@ static void its_thread_ends_soon(void **state)
 	assert_int_equal(mock_hydra_mode(&f->hydra), MOCK_HYDRA_GAMEPAD);
 }
 
+#define PACED 4096 /* more than wait between the device and the test */
+
+/* When reports were said, and how much later they had been read, checked and handed over. */
+struct paced {
+	int64_t said_ns[PACED];
+	double *late_us;
+	int read;
+};
+
 /* Left, then right of the same report, and each report the last one's successor. */
-static void take_in_order(struct fixture *f, int *read)
+static void take_in_order(struct fixture *f, struct paced *paced)
 {
+	int *read = &paced->read;
 	struct track_report r;
 
 	while (track_device_take(f->device, &f->reader, &r, 1) == 1) {
@@ -257,8 +267,16 @@ static void take_in_order(struct fixture *f, int *read)
 
 		assert_int_equal(r.sensor, *read % 2);
 		assert_true(fabsf(r.T_base_sensor.p[0] - (r.sensor ? x_m : -x_m)) < 1e-6f);
+		paced->late_us[*read / 2] = (double)(r.arrived_ns - paced->said_ns[*read / 2 % PACED]) * 1e-3;
 		++*read;
 	}
+}
+
+static int rising(const void *a, const void *b)
+{
+	const double x = *(const double *)a, y = *(const double *)b;
+
+	return (x > y) - (x < y);
 }
 
 /*
@@ -271,8 +289,8 @@ static void none_is_lost_at_1000_a_second(void **state)
 	const int count = getenv("GROTTO_LONG") ? 60000 : 2000;
 	const struct timespec ms = { 0, GR_NS_PER_MS };
 	const int64_t end_ns = gr_clock_now(&gr_clock_monotonic) + 600 * GR_NS_PER_S;
+	struct paced paced = { .late_us = calloc((size_t)count, sizeof(double)) };
 	struct track_counters counters;
-	int read = 0;
 
 	mock_hydra_plug(&f->hydra, bed, 0, 1);
 	assert_int_equal(track_device_start(f->device), GR_OK);
@@ -280,22 +298,26 @@ static void none_is_lost_at_1000_a_second(void **state)
 	for (int i = 0; i < count; i++) {
 		while (mock_hid_waiting(f->hydra.reports) > 32)
 			nanosleep(&ms, NULL);
+		paced.said_ns[i % PACED] = gr_clock_now(&gr_clock_monotonic);
 		mock_hydra_say(&f->hydra, (uint8_t)i, 100 + i % 400, 0, -100);
 		nanosleep(&ms, NULL);
-		take_in_order(f, &read);
+		take_in_order(f, &paced);
 	}
-	while (read < 2 * count) {
+	while (paced.read < 2 * count) {
 		assert_true(gr_clock_now(&gr_clock_monotonic) < end_ns);
 		nanosleep(&ms, NULL);
-		take_in_order(f, &read);
+		take_in_order(f, &paced);
 	}
 	track_device_counters(f->device, &counters);
-	assert_int_equal(read, 2 * count);
+	assert_int_equal(paced.read, 2 * count);
 	assert_int_equal(counters.reports, 2 * count);
 	assert_int_equal(counters.missed, 0);
 	assert_int_equal(f->reader.missed, 0);
-	printf("# %d reports of two wands, 1000 a second: none lost, merged or out of order\n",
-	       count);
+	qsort(paced.late_us, (size_t)count, sizeof *paced.late_us, rising);
+	printf("# %d reports of two wands, 1000 a second: none lost, merged or out of order; handed over p50 %.0f, p99 %.0f "
+	       "us after the mocked device said them, the mock's own way included\n",
+	       count, paced.late_us[count / 2], paced.late_us[count * 99 / 100]);
+	free(paced.late_us);
 }
 
 /* What a user without the udev rule sees. Root may open anything, so somebody else tries. */
