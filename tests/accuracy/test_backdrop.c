@@ -1,8 +1,10 @@
 /* Where no surface is, the picture shows the environment: every pixel against its own look-up. */
 #include "base/log.h"
 #include "base/result.h"
+#include "base/sunlight.h"
 #include "renderer/renderer.h"
 #include "renderer/scene/environment.h"
+#include "renderer/scene/sky.h"
 #include "tests/accuracy/cornell.h"
 #include "tests/unit/gl.h"
 #include "tests/unit/unit.h"
@@ -128,12 +130,79 @@ static void constants(void **state)
 	}
 }
 
+/* Irradiance of open ground from a sky, by a sum of its own. */
+static void sum_sky(const struct sky *sky, double sum[3])
+{
+	for (int i = 0; i < 200; i++)
+		for (int k = 0; k < 400; k++) {
+			const double y = (i + 0.5) / 200, r = sqrt(1 - y * y), p = 2 * M_PI * (k + 0.5) / 400;
+			const double d[3] = { r * cos(p), y, r * sin(p) };
+			double rgb[3];
+
+			sky_radiance(sky, d, rgb);
+			for (int c = 0; c < 3; c++)
+				sum[c] += rgb[c] * y * 2 * M_PI / 200 / 400;
+		}
+}
+
+/* What a scene file's sky and sun make of grey ground, through lamp, surfels and shading. */
+static void ground_under_a_sky(void **state)
+{
+	static const char text[] =
+		"model = \"m.obj\"; environment = { kind = \"sky\"; turbidity = 2.5; sun_elevation_deg = 40.0; "
+		"sun_azimuth_deg = 120.0; }; gi = { method = \"surfels\"; surfels = { spacing_m = 4.0; }; }; "
+		"cameras = ( { name = \"down\"; position = [0.0, 10.0, 0.0]; target = [0.0, 0.0, 0.0]; "
+		"up = [0.0, 0.0, -1.0]; vfov_deg = 20.0; } );";
+	static const struct quad quad = {
+		0, { { -20, 0, 20 }, { 20, 0, 20 }, { 20, 0, -20 }, { -20, 0, -20 } }
+	};
+	static const struct scene_material grey = { .diffuse = { 0.5f, 0.5f, 0.5f },
+						    .diffuse_image = -1, .emission_image = -1 };
+	const struct renderer_params params = { .width = SIDE, .height = SIDE, .keep_radiance = true,
+						.quiet = true };
+	double sun[3], to_sun[3], want[3] = { 0 }, worst = 0;
+	struct gr_diag diag = { 0 };
+	struct render_frame frame;
+	struct scene_file *file;
+	struct renderer *r;
+	struct scene scene;
+	struct image got;
+	struct sky sky;
+
+	assert_int_equal(scene_file_parse(text, strlen(text), "sky.scene", &file, &diag), GR_OK);
+	quads_scene(&scene, &quad, 1, &grey, 1);
+	assert_int_equal(environment_create(&scene.environment, file, &diag), GR_OK);
+	assert_int_equal(renderer_create(&r, *state, &params, file, &scene), GR_OK);
+	render_frame_init(&frame, file);
+	assert_int_equal(renderer_draw_camera(r, &frame, &file->cameras[0]), GR_OK);
+	assert_int_equal(renderer_read_radiance(r, 0, &got), GR_OK);
+	for (int i = 0; i < 3; i++)
+		to_sun[i] = (double)file->environment.to_sun[i];
+	sky_init(&sky, 2.5, to_sun);
+	sum_sky(&sky, want);
+	sunlight_irradiance(2.5, asin(to_sun[1]), sun);
+	for (int i = 0; i < 3; i++) {
+		want[i] = 0.5 / M_PI * (want[i] + sun[i] * to_sun[1]);
+		worst = fmax(worst, fabs((double)got.data[3 * (SIDE / 2 * SIDE + SIDE / 2) + i] / want[i] - 1));
+	}
+	printf("# ground under a sky and its sun: %.3f %.3f %.3f W/(m2 sr), off by %.1e\n", want[0], want[1],
+	       want[2], worst);
+	assert_true(worst < 1e-3);
+	image_finish(&got);
+	renderer_destroy(&r);
+	environment_destroy(&scene.environment);
+	quads_free(&scene);
+	scene_file_destroy(&file);
+	gr_diag_finish(&diag);
+}
+
 int main(void)
 {
 	struct target *target = gl_target_or_skip(SIDE, SIDE);
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_prestate(pictures, target),
 		cmocka_unit_test_prestate(constants, target),
+		cmocka_unit_test_prestate(ground_under_a_sky, target),
 	};
 	int failed;
 
