@@ -146,6 +146,10 @@ static void plan_targets(const struct demo_plan *plan, struct layout *layout)
 
 		node->target = plan->window ? LAYOUT_TARGET_WINDOW : LAYOUT_TARGET_HEADLESS;
 		node->gpu = -1;
+		/* The room's projectors are not here: pictures are for people who look at files. */
+		free(node->projector.table);
+		node->projector = (struct layout_projector){ .gain = { 1, 1, 1 },
+							     .gamma = { NAN, NAN, NAN } };
 		/* Quad buffers need a stereo screen, which a demo cannot count on. */
 		if (node->eyes == LAYOUT_EYES_QUAD_BUFFER ||
 		    (plan->stereo && node->eyes == LAYOUT_EYES_MONO))
