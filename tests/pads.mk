@@ -19,13 +19,17 @@ tests_unit_test_spacemouse_CFLAGS = $(TEST_CFLAGS)
 tests_unit_test_spacemouse_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
 
 if HAVE_UMOCKDEV
-check_PROGRAMS += tests/unit/test_pads
-TESTS += tests/unit/test_pads
+check_PROGRAMS += tests/unit/test_pads tests/unit/test_pads_room
+TESTS += tests/unit/test_pads tests/unit/test_pads_room
 endif
 tests_unit_test_pads_SOURCES = tests/unit/test_pads.c tests/unit/pads_fixture.h \
 	tests/unit/hid_items.h tests/unit/sony_bytes.h $(MOCK_HID_SOURCES)
 tests_unit_test_pads_CFLAGS = $(MOCK_CFLAGS)
 tests_unit_test_pads_LDADD = $(MOCK_LIBS)
+tests_unit_test_pads_room_SOURCES = tests/unit/test_pads_room.c tests/unit/pads_fixture.h \
+	tests/unit/hid_items.h tests/unit/sony_bytes.h tests/unit/unit_config.h $(MOCK_HID_SOURCES)
+tests_unit_test_pads_room_CFLAGS = $(MOCK_CFLAGS)
+tests_unit_test_pads_room_LDADD = $(tests_unit_test_trackers_LDADD) $(UMOCKDEV_LIBS) -lutil
 
 # Fuzzers: see tests/config.mk.
 EXTRA_DIST += \
@@ -66,6 +70,7 @@ EXTRA_DIST += \
 	tests/fuzz/corpus/gamepad/sliders \
 	tests/fuzz/corpus/gamepad/two \
 	tests/fuzz/corpus/pads/cap \
+	tests/fuzz/corpus/pads/clock-stands \
 	tests/fuzz/corpus/pads/dualsense-bluetooth \
 	tests/fuzz/corpus/pads/dualsense-bluetooth-sum \
 	tests/fuzz/corpus/pads/dualsense-usb \

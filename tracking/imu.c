@@ -116,6 +116,8 @@ void track_imu_add(struct track_imu *imu, const double gyro[3], const double acc
 	double rate[3], up[3], measured[3], error[3];
 	double gain = imu->params.gain_s;
 
+	if (dt_s > GAP_S) /* where it has been meanwhile nobody knows */
+		imu->age_s = 0;
 	if (!(dt_s > 0 && dt_s <= GAP_S))
 		dt_s = 0;
 	if (!imu->started && g > 0.5) {

@@ -54,7 +54,7 @@ struct track_imu {
 	bool started;
 	unsigned learnt; /* windows of rest that the bias is the mean of; 0: it is not known */
 	unsigned far;	 /* windows in a row whose mean is further from it than a step */
-	double age_s;	/* since it started */
+	double age_s;	 /* since it began, or began anew after a gap */
 	/* The window that is being watched. */
 	double window_s;
 	unsigned count;
@@ -63,7 +63,7 @@ struct track_imu {
 
 /*
  * One measurement, that long after the last (s; what is over 0.1 s or below 0
- * counts as 0: there is nothing to fill it with). gyro: rad/s, right handed.
+ * counts as 0: there is nothing to fill it with, and the tilt is found anew). gyro: rad/s, right handed.
  * accelerometer: g, of what holds the body up: (0, 1, 0) at rest with its top
  * up. All finite.
  */

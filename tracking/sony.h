@@ -99,12 +99,17 @@ size_t track_sony_calibration_bytes(enum track_sony_model model, bool bluetooth)
 int track_sony_calibrate(enum track_sony_model model, bool bluetooth, bool paired_signs,
 			 const uint8_t *bytes, size_t len, struct track_sony_calibration *out);
 
+/* A copy's clock that stands still for so many reports is none: times of arrival are used. */
+#define TRACK_SONY_STOOD 8
+
 /* From one report to the next. `calibration` set, the rest 0, with imu.params. */
 struct track_sony_state {
 	struct track_sony_calibration calibration;
 	struct track_imu imu;
 	bool started;
 	uint64_t sequence, time; /* unwrapped */
+	uint32_t raw_time;
+	unsigned stood; /* reports in a row with the same time */
 	int64_t arrived_ns;
 	uint32_t recentre; /* buttons that set the heading to that of the base when pressed */
 	uint32_t held;

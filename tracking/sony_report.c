@@ -13,40 +13,39 @@ static float stick(uint8_t raw)
 	return raw < 128 ? (float)(raw - 128) / 128.0f : (float)(raw - 128) / 127.0f;
 }
 
-/* The device's counters go on; how many reports are missing, and the time since the last one. */
-static uint64_t count_on(enum track_sony_model model, struct track_sony_state *s,
-			 const struct track_sony_report *raw, int64_t arrived_ns, double *dt_s)
+/* The time since the last report, seconds, by the pad's clock where that goes. */
+static double pass_time(enum track_sony_model model, struct track_sony_state *s, uint32_t raw,
+			int64_t since_ns)
 {
 	const struct track_sony_bits bits = track_sony_bits(model);
-	const int64_t since_ns = arrived_ns - s->arrived_ns;
-	const uint64_t last = s->time, sequence = s->sequence;
-	uint64_t missed = 0;
+	const uint64_t last = s->time;
+	const int64_t steps = since_ns > 0 ? 3 * since_ns / bits.step_3ns : 0;
 
-	*dt_s = 0;
-	if (!s->started) {
-		s->time = raw->time;
-		s->sequence = raw->sequence;
-	} else {
-		s->time = track_unwrap(raw->time, bits.time,
-				       last + (uint64_t)(since_ns > 0 ? 3 * since_ns / bits.step_3ns
-								      : 0));
-		/* After a long silence nobody knows how often the sequence went round. */
-		s->sequence = track_unwrap(raw->sequence, bits.sequence, sequence + 1);
-		*dt_s = ((double)s->time - (double)last) * (double)bits.step_3ns / 3e9;
-		if (since_ns < GR_NS_PER_S && s->sequence > sequence)
-			missed = s->sequence - sequence - 1;
-	}
-	s->started = true;
-	s->arrived_ns = arrived_ns;
-	return missed;
+	s->time = track_unwrap(raw, bits.time, last + (uint64_t)steps);
+	s->stood = raw == s->raw_time ? s->stood + 1 : 0;
+	s->raw_time = raw;
+	if (s->stood >= TRACK_SONY_STOOD)
+		return (double)since_ns / 1e9;
+	return ((double)s->time - (double)last) * (double)bits.step_3ns / 3e9;
+}
+
+/* Reports that are missing before this one. */
+static uint64_t count_on(enum track_sony_model model, struct track_sony_state *s, uint8_t raw,
+			 int64_t since_ns)
+{
+	const uint64_t last = s->sequence;
+
+	s->sequence = track_unwrap(raw, track_sony_bits(model).sequence, last + 1);
+	/* After a long silence nobody knows how often it went round. */
+	return since_ns < GR_NS_PER_S && s->sequence > last ? s->sequence - last - 1 : 0;
 }
 
 uint64_t track_sony_take(enum track_sony_model model, struct track_sony_state *s,
 			 const struct track_sony_report *raw, int64_t arrived_ns,
 			 struct track_report *out)
 {
-	double gyro[3], accel[3], dt_s;
-	uint64_t missed;
+	double gyro[3], accel[3], dt_s = 0;
+	uint64_t missed = 0;
 
 	*out = (struct track_report){
 		.has = TRACK_BUTTONS | TRACK_AXIS_VALUES,
@@ -61,7 +60,15 @@ uint64_t track_sony_take(enum track_sony_model model, struct track_sony_state *s
 		return 0;
 	if (raw->battery >= 0)
 		out->has |= TRACK_BATTERY;
-	missed = count_on(model, s, raw, arrived_ns, &dt_s);
+	if (s->started) {
+		dt_s = pass_time(model, s, raw->time, arrived_ns - s->arrived_ns);
+		missed = count_on(model, s, raw->sequence, arrived_ns - s->arrived_ns);
+	} else {
+		s->time = s->raw_time = raw->time;
+		s->sequence = raw->sequence;
+	}
+	s->started = true;
+	s->arrived_ns = arrived_ns;
 	for (int i = 0; i < 3; i++) {
 		const struct track_sony_calibration *c = &s->calibration;
 
@@ -73,7 +80,10 @@ uint64_t track_sony_take(enum track_sony_model model, struct track_sony_state *s
 		track_imu_recentre(&s->imu);
 	s->held = raw->buttons;
 	rotation_to(&s->imu.T_base_body, out->T_base_sensor.q);
-	out->has |= TRACK_ORIENTATION | TRACK_DEVICE_TIME;
+	out->has |= TRACK_ORIENTATION;
+	if (s->stood >= TRACK_SONY_STOOD)
+		return missed;
+	out->has |= TRACK_DEVICE_TIME;
 	out->device_ns = (int64_t)(s->time * (uint64_t)track_sony_bits(model).step_3ns / 3);
 	return missed;
 }

@@ -346,6 +346,23 @@ static void recentred_it_points_ahead_and_leans_as_before(void **state)
 	}
 }
 
+/* It was away and is held otherwise now: its tilt is right within a second. */
+static void a_gap_is_found_out(void **state)
+{
+	const double none[3] = { 0 }, up[3] = { 0, 1, 0 }, aside[3] = { 0.8, 0.6, 0 };
+	struct track_imu imu = { .params = TRACK_IMU_STANDARD };
+	double is[3];
+
+	(void)state;
+	for (int i = 0; i < 3 * RATE_HZ; i++)
+		track_imu_add(&imu, none, up, DT_S);
+	track_imu_add(&imu, none, aside, 2);
+	for (int i = 0; i < RATE_HZ; i++)
+		track_imu_add(&imu, none, aside, DT_S);
+	up_in(&imu.T_base_body, is);
+	assert_true(acos(is[0] * 0.8 + is[1] * 0.6) < 6 * DEG); /* of 53 */
+}
+
 /* Whatever the sensors say, it is a turn; times that cannot be are none. */
 static void nothing_breaks_it(void **state)
 {
@@ -379,6 +396,7 @@ int main(void)
 		cmocka_unit_test(turns_are_right_handed),
 		cmocka_unit_test(it_begins_as_it_is_held),
 		cmocka_unit_test(recentred_it_points_ahead_and_leans_as_before),
+		cmocka_unit_test(a_gap_is_found_out),
 		cmocka_unit_test(nothing_breaks_it),
 	};
 

@@ -406,6 +406,32 @@ static void a_long_silence_is_no_turn(void **state)
 	}
 }
 
+/* A copy says the same time each time: it turns nevertheless, and is timed by its arrival. */
+static void a_clock_that_stands_still(void **state)
+{
+	(void)state;
+	for (unsigned model = 0; model < 2; model++) {
+		struct track_sony_report raw = { .motion = true, .accel = { 0, 8192, 0 } };
+		struct track_sony_state s = state_of();
+		struct track_report out;
+
+		for (int i = 0; i <= 250; i++) {
+			raw.gyro[1] = i <= TRACK_SONY_STOOD ? 0 : 90 * 16;
+			raw.sequence = (uint8_t)(i & 63);
+			(void)track_sony_take((enum track_sony_model)model, &s, &raw,
+					      i * 4 * GR_NS_PER_MS, &out);
+			assert_int_equal(!(out.has & TRACK_DEVICE_TIME), i >= TRACK_SONY_STOOD);
+			assert_true(out.has & TRACK_ORIENTATION);
+		}
+		/* 242 times 4 ms at 90 degrees a second */
+		assert_true(fabsf(out.T_base_sensor.q[1] - sinf(0.242f * 4 * 90 / 2 * 0.0174533f)) <
+			    1e-3f);
+		raw.time = 1000;
+		(void)track_sony_take((enum track_sony_model)model, &s, &raw, GR_NS_PER_S, &out);
+		assert_true(out.has & TRACK_DEVICE_TIME);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -422,6 +448,7 @@ int main(void)
 		cmocka_unit_test(sticks_and_triggers),
 		cmocka_unit_test(counters_wrap_and_gaps_are_counted),
 		cmocka_unit_test(a_long_silence_is_no_turn),
+		cmocka_unit_test(a_clock_that_stands_still),
 	};
 
 	return cmocka_run_group_tests_name("sony", tests, NULL, NULL);
