@@ -6,6 +6,7 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/delta.c \
 	protocol/fragment.c protocol/fragment.h \
 	protocol/joints.c protocol/joints.h \
+	protocol/input.c protocol/input.h \
 	protocol/key.c protocol/key.h \
 	protocol/loss.h \
 	protocol/master.c protocol/master.h protocol/master_private.h \
@@ -26,6 +27,7 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/node_call.c \
 	protocol/node_clock.c \
 	protocol/node_frame.c \
+	protocol/node_input.c \
 	protocol/node_share.c \
 	protocol/node_vitals.c \
 	protocol/outbox.c protocol/outbox.h \

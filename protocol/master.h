@@ -14,6 +14,7 @@
 #define GROTTO_PROTOCOL_MASTER_H
 
 #include "protocol/clock_offset.h"
+#include "protocol/input.h"
 #include "protocol/key.h"
 #include "protocol/pace.h"
 #include "protocol/params.h"
@@ -145,6 +146,8 @@ struct fdp_master_ops {
 	 * repeated ones too, before anything is made of it. May be NULL.
 	 */
 	void (*report)(void *ctx, unsigned node, unsigned kind, const struct fdp_report *report);
+	/* What is done at the window of a node that is in; never older than the last. May be NULL. */
+	void (*input)(void *ctx, unsigned node, const struct fdp_input *input);
 	void *ctx;
 };
 

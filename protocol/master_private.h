@@ -98,6 +98,7 @@ struct fdp_peer {
 	uint64_t echoes;            /* said to it */
 	uint32_t path_ns[FDP_PATHS]; /* of its last SWAPs */
 	uint64_t path_count;
+	uint64_t input_sequence;    /* of the newest INPUT's datagram */
 	char refused[FDP_REASON_MAX];
 };
 

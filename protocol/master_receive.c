@@ -149,6 +149,22 @@ static void on_report(struct fdp_master *m, unsigned node, enum fdp_kind kind,
 		on_ready(m, node, report, now_ns);
 }
 
+/* A state, of which the newest counts: datagrams overtake each other. */
+static enum fdp_verdict on_input(struct fdp_master *m, const struct fdp_header *h, const uint8_t *body)
+{
+	struct fdp_peer *peer = &m->peers[h->sender];
+	struct fdp_input input;
+
+	if (fdp_master_is_follower(m, h->sender) || fdp_input_decode(body, h->payload_len, &input))
+		return FDP_BAD_FORMAT;
+	if (h->sequence < peer->input_sequence)
+		return FDP_GOOD;
+	peer->input_sequence = h->sequence;
+	if (m->ops.input)
+		m->ops.input(m->ops.ctx, h->sender, &input);
+	return FDP_GOOD;
+}
+
 /* An authentic, new datagram of a present peer. */
 static enum fdp_verdict dispatch(struct fdp_master *m, const struct fdp_header *h,
 				 const uint8_t *body, int64_t now_ns)
@@ -173,6 +189,8 @@ static enum fdp_verdict dispatch(struct fdp_master *m, const struct fdp_header *
 			return FDP_BAD_FORMAT;
 		fdp_master_note_vitals(m, h->sender, &vitals);
 		return FDP_GOOD;
+	case FDP_INPUT:
+		return on_input(m, h, body);
 	case FDP_NACK:
 		if (fdp_nack_decode(body, h->payload_len, &nack))
 			return FDP_BAD_FORMAT;

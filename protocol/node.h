@@ -18,6 +18,7 @@
 #ifndef GROTTO_PROTOCOL_NODE_H
 #define GROTTO_PROTOCOL_NODE_H
 
+#include "protocol/input.h"
 #include "protocol/master.h"
 
 enum fdp_node_state { FDP_NODE_ALONE, FDP_NODE_ASKING, FDP_NODE_WAITING_SNAPSHOT, FDP_NODE_LIVE };
@@ -115,6 +116,9 @@ int fdp_node_replan(struct fdp_node *node, uint64_t plan, uint16_t plan_cost, ui
 		    size_t share_bytes);
 /* Where its time goes, told to the master once a second: the first FDP_VITALS_STAGES of them. */
 void fdp_node_stages(struct fdp_node *node, const struct fdp_vitals_stage *stages, unsigned count);
+
+/* What is done at its window, as it is now; told soon if it has changed (protocol/input.h). */
+void fdp_node_input(struct fdp_node *node, const struct fdp_input *input);
 
 void fdp_node_leave(struct fdp_node *node, int64_t now_ns);
 enum fdp_node_state fdp_node_status(const struct fdp_node *node);

@@ -1,7 +1,7 @@
 /*
  * Inside the node's half of FDP: node.c has membership, node_call.c which of several
  * masters it is with, node_frame.c the frame, node_clock.c time, node_vitals.c what it
- * tells of itself, node_share.c the light that the nodes share out.
+ * tells of itself, node_input.c what is done at its window, node_share.c the light that the nodes share out.
  */
 #ifndef GROTTO_PROTOCOL_NODE_PRIVATE_H
 #define GROTTO_PROTOCOL_NODE_PRIVATE_H
@@ -86,6 +86,12 @@ struct fdp_node {
 	struct fdp_node_frame current;
 	uint64_t swapped_frame, swapped_count;
 	int64_t swap_ns;
+	struct {
+		struct fdp_input state;
+		bool given, changed; /* since the start; since it was last sent */
+		unsigned times;      /* that it is to be said, whatever is held */
+		int64_t sent_ns;
+	} input;
 	struct fdp_vitals vitals;
 	int64_t vitals_ns; /* last told in this session; 0: not yet */
 
@@ -175,6 +181,8 @@ void fdp_node_note_clock(struct fdp_node *n, const struct fdp_announce *a, int64
 /* The swap that it announces is news: when it is due. */
 void fdp_node_note_swap(struct fdp_node *n, const struct fdp_announce *a, int64_t now_ns);
 
+void fdp_node_input_tick(struct fdp_node *n, int64_t now_ns);
+int64_t fdp_node_input_next(const struct fdp_node *n);
 void fdp_node_vitals_tick(struct fdp_node *n, int64_t now_ns);
 int64_t fdp_node_vitals_next(const struct fdp_node *n);
 void fdp_node_frame_tick(struct fdp_node *n, int64_t now_ns);

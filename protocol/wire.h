@@ -59,6 +59,7 @@ enum fdp_kind {
 	FDP_LACK,     /* both: these pieces of a slice are missing */
 	FDP_BEACON,   /* master: this is the session, for those who are not in it */
 	FDP_VITALS,   /* node: how much its socket holds, where its time goes */
+	FDP_INPUT,    /* node: what is done at its window */
 	FDP_KINDS
 };
 

@@ -38,6 +38,7 @@ PROTOCOL_TESTS = \
 	tests/unit/test_trust \
 	tests/unit/test_swap \
 	tests/unit/test_way \
+	tests/unit/test_input \
 	tests/unit/test_window \
 	tests/unit/test_wire
 check_PROGRAMS += $(PROTOCOL_TESTS)
@@ -115,6 +116,9 @@ tests_unit_test_swap_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_way_SOURCES = tests/unit/test_way.c $(CLUSTER_SIM_SOURCES)
 tests_unit_test_way_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_way_LDADD = $(PROTOCOL_TEST_LDADD)
+tests_unit_test_input_SOURCES = tests/unit/test_input.c $(CLUSTER_SIM_SOURCES)
+tests_unit_test_input_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
+tests_unit_test_input_LDADD = $(PROTOCOL_TEST_LDADD)
 tests_unit_test_window_SOURCES = tests/unit/test_window.c $(SHARE_ROOM_SOURCES)
 tests_unit_test_window_CFLAGS = $(PROTOCOL_TEST_CFLAGS)
 tests_unit_test_window_LDADD = $(PROTOCOL_TEST_LDADD)
