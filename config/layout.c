@@ -75,6 +75,7 @@ static void build_rest(struct layout *layout, struct layout_file *file)
 	layout->swap = file->swap.swap;
 	layout->slow = file->slow.slow;
 	layout->test = file->test.test;
+	layout->hand = file->hand.hand;
 	for (size_t i = 0; i < file->tracker_count; i++)
 		layout_tracker_build(&layout->trackers[i], &file->trackers[i]);
 	layout->tracker_count = file->tracker_count;

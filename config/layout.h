@@ -159,10 +159,25 @@ struct layout_test {
 	bool off_loopback; /* and that beyond this machine */
 };
 
-/* All after LAYOUT_TRACKER_REPLAY are devices, see docs/trackers.md. */
+/* What the buttons and axes of the wand do, by their number from 0, -1: none; see daemon/hand.h. */
+enum layout_turn { LAYOUT_TURN_LEVEL, LAYOUT_TURN_FREE };
+struct layout_hand {
+	int next;                    /* buttons: in every input layout */
+	int fly, drag, reset, lamps; /* navigation */
+	int torch, dimmer, brighter; /* lighting */
+	int quality, fewer, more;    /* settings */
+	int saturation, hue;         /* axes: lighting */
+	int absorption, scattering;  /* settings */
+	enum layout_turn turn;
+	bool hud;
+	float hud_scale;
+};
+
+/* All after LAYOUT_TRACKER_WINDOW are devices, see docs/trackers.md. */
 enum layout_tracker_kind {
 	LAYOUT_TRACKER_SIM,
 	LAYOUT_TRACKER_REPLAY,
+	LAYOUT_TRACKER_WINDOW, /* a wand of keyboard and mouse in the nodes' windows */
 	LAYOUT_TRACKER_HYDRA,
 	LAYOUT_TRACKER_VIPER,
 	LAYOUT_TRACKER_LIBERTY,
@@ -320,6 +335,7 @@ struct layout {
 	struct layout_swap swap;
 	struct layout_slow slow;
 	struct layout_test test;
+	struct layout_hand hand;
 	struct layout_tracker *trackers;
 	size_t tracker_count;
 	struct gr_pose start_head; /* T_room_head before a tracker speaks */
@@ -354,7 +370,7 @@ int layout_write(FILE *file, const struct layout *layout);
  * file, up to `room` of them (items may be NULL), and the BLAKE2b-256 of the
  * canonical form of all: walls, nodes (name, wall, part, address, port, eyes), network, standbys, rates,
  * start, room, eye separation. Not of paths, comments, the key file, the
- * trackers, the control socket, tests, slow and how far ahead a swap is set (the master's own), nor of target, display,
+ * trackers, the hand, the control socket, tests, slow and how far ahead a swap is set (the master's own), nor of target, display,
  * monitor and gpu (one node's own). layout_load has stored it in hash. Returns the
  * number of parts, at most LAYOUT_ITEMS_MAX.
  */

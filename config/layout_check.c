@@ -63,6 +63,7 @@ void layout_check(struct options_reader *reader, struct layout_file *file)
 	layout_check_room(reader, file);
 	layout_check_network(reader, file);
 	layout_check_trackers(reader, file);
+	layout_check_hand(reader, file);
 	check_slow(reader, file);
 	check_control_socket(reader, file);
 }

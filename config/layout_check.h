@@ -25,7 +25,8 @@ void layout_check_nodes(struct options_reader *reader, struct layout_file *file)
 void layout_check_room(struct options_reader *reader, struct layout_file *file);
 void layout_check_network(struct options_reader *reader, struct layout_file *file);
 void layout_check_trackers(struct options_reader *reader, const struct layout_file *file);
-/* Of those: the addresses and ports of tracker i, a device. */
+void layout_check_hand(struct options_reader *reader, const struct layout_file *file);
+/* Of trackers: the addresses and ports of tracker i, a device. */
 void layout_check_tracker_network(struct options_reader *reader, const struct layout_file *file,
 				  size_t i);
 /* The groups of gamepads and of SpaceMouse, given to tracker i. */

@@ -29,6 +29,8 @@ static unsigned tracker_parts(const struct layout_file_tracker *entry, enum layo
 
 	if (!entry->at || (int)entry->tracker.kind == OPTION_ABSENT)
 		return 0;
+	if (entry->tracker.kind == LAYOUT_TRACKER_WINDOW && body == LAYOUT_HEAD)
+		return 0;
 	if (!layout_tracker_is_device(&entry->tracker))
 		return (body == LAYOUT_HEAD ? entry->tracker.head : entry->tracker.wand) ? ALL : 0;
 	for (size_t i = 0; i < bindings; i++)
@@ -65,7 +67,7 @@ static void check_whole(struct options_reader *reader, const struct layout_file 
 					      other->tracker.name, body_name[body],
 					      body_name[body]);
 		}
-	if (!entry->tracker.head && !entry->tracker.wand)
+	if (!tracker_parts(entry, LAYOUT_HEAD, 0) && !tracker_parts(entry, LAYOUT_WAND, 0))
 		options_fault(reader, GR_DIAG_ERROR, entry->at, NULL,
 			      "tracks neither head nor wand; leave it out or set one of them");
 }

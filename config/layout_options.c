@@ -273,6 +273,8 @@ const struct option layout_options[] = {
 	  .help = "where head and wand are before a tracker speaks" },
 	{ .key = "room", .type = OPTION_GROUP, AT(layout_file, room), .group = room_options,
 	  .help = "where eyes may be; without it the box around the walls" },
+	{ .key = "hand", .type = OPTION_GROUP, AT(layout_file, hand), .group = layout_hand_options,
+	  .help = "what the buttons and axes of the wand do, and what is shown beside it" },
 	{ .key = "trackers", .type = OPTION_LIST, .count = LAYOUT_MAX_TRACKERS,
 	  AT(layout_file, trackers), .size = sizeof(struct layout_file_tracker),
 	  .count_offset = offsetof(struct layout_file, tracker_count), .group = layout_tracker_options,

@@ -70,6 +70,11 @@ struct layout_file_test {
 	struct layout_test test;
 };
 
+struct layout_file_hand {
+	const config_setting_t *at;
+	struct layout_hand hand;
+};
+
 struct layout_file_start {
 	const config_setting_t *at;
 	vec3 head, wand;
@@ -154,6 +159,7 @@ struct layout_file {
 	struct layout_file_swap swap;
 	struct layout_file_slow slow;
 	struct layout_file_test test;
+	struct layout_file_hand hand;
 	struct layout_file_start start;
 	struct layout_file_room room;
 	struct layout_file_standby *standby;
@@ -164,6 +170,7 @@ struct layout_file {
 
 extern const struct option layout_options[];
 extern const struct option layout_tracker_options[];
+extern const struct option layout_hand_options[];
 extern const struct option layout_dtrack_options[], layout_vrpn_options[];
 extern const struct option layout_pad_options[], layout_spacemouse_options[];
 

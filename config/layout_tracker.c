@@ -17,7 +17,7 @@ bool layout_tracker_is_pad(const struct layout_tracker *tracker)
 
 bool layout_tracker_is_device(const struct layout_tracker *tracker)
 {
-	return tracker->kind > LAYOUT_TRACKER_REPLAY;
+	return tracker->kind > LAYOUT_TRACKER_WINDOW;
 }
 
 void layout_pose_from_angles(const vec3 position, const vec3 angles, struct gr_pose *out)
@@ -94,6 +94,8 @@ void layout_tracker_build(struct layout_tracker *out, struct layout_file_tracker
 	out->binding_count = from->binding_count;
 	for (size_t i = 0; i < from->binding_count; i++)
 		build_binding(&out->bindings[i], &from->bindings[i]);
+	if (out->kind == LAYOUT_TRACKER_WINDOW)
+		out->head = false;
 	if (!layout_tracker_is_device(out))
 		return;
 	out->head = out->wand = false;

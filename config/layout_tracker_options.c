@@ -1,7 +1,7 @@
 /* The layout's keys about trackers. */
 #include "config/layout_options.h"
 
-static const char *const kind_choices[] = { "sim",     "replay", "hydra", "viper", "liberty",
+static const char *const kind_choices[] = { "sim",     "replay", "window", "hydra", "viper", "liberty",
 					    "patriot", "dtrack", "vrpn",  "gamepad",
 					    "dualshock4", "dualsense", "spacemouse", NULL };
 static const char *const body_choices[] = { "head", "wand", NULL };
@@ -147,7 +147,7 @@ const struct option layout_tracker_options[] = {
 	  AT(layout_file_tracker, tracker.name), .help = "the tracker's name in logs and status" },
 	{ .key = "kind", .type = OPTION_CHOICE, .required = true, .choices = kind_choices,
 	  AT(layout_file_tracker, tracker.kind),
-	  .help = "a simulated visitor, a log that is replayed, or a device" },
+	  .help = "a simulated visitor, a log that is replayed, keyboard and mouse in the nodes' windows, or a device" },
 	{ .key = "head", .type = OPTION_BOOL, .standard = "true",
 	  AT(layout_file_tracker, tracker.head), .help = "for sim and replay: whether it tracks the head" },
 	{ .key = "wand", .type = OPTION_BOOL, .standard = "true",

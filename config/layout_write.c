@@ -71,6 +71,7 @@ int layout_write(FILE *file, const struct layout *layout)
 	form.swap.swap = layout->swap;
 	form.slow.slow = layout->slow;
 	form.test.test = layout->test;
+	form.hand.hand = layout->hand;
 	glm_vec3_copy((float *)layout->start_head.p, form.start.head);
 	glm_vec3_copy((float *)layout->start_wand.p, form.start.wand);
 	glm_vec3_copy((float *)layout->start_head_angles, form.start.head_angles);

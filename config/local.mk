@@ -13,6 +13,7 @@ config_libgconfig_a_SOURCES = \
 	config/layout_check_trackers.c \
 	config/layout_check_walls.c \
 	config/layout_edit.c config/layout_edit.h \
+	config/layout_hand.c \
 	config/layout_geometry.c config/layout_geometry.h \
 	config/layout_items.c \
 	config/layout_options.c config/layout_options.h \

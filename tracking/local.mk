@@ -45,5 +45,6 @@ tracking_libgtracking_a_SOURCES = \
 	tracking/usb.c tracking/usb.h tracking/usb_private.h tracking/usb_pipe.c \
 	tracking/viper.c tracking/viper.h \
 	tracking/vrpn.h tracking/vrpn_decode.c tracking/vrpn_device.c \
-	tracking/vrpn_link.c tracking/vrpn_link.h tracking/vrpn_state.c
+	tracking/vrpn_link.c tracking/vrpn_link.h tracking/vrpn_state.c \
+	tracking/window.c tracking/window.h
 tracking_libgtracking_a_CFLAGS = $(AM_CFLAGS) $(CGLM_CFLAGS) $(UDEV_CFLAGS) $(HIDAPI_CFLAGS) $(LIBUSB_CFLAGS) -pthread

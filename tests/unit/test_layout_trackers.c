@@ -309,12 +309,82 @@ static void faults_of_pads_are_named(void **state)
 	assert_int_equal(bad, 0);
 }
 
+/* What is done in windows is a wand beside a tracked head; what its buttons do stands in `hand`. */
+static const char hand[] =
+	"trackers = ( { name = \"walker\"; kind = \"sim\"; wand = false; },\n"
+	"	{ name = \"keys\"; kind = \"window\"; } );\n"
+	"hand = { drag = 1; lamps = -1; hue = 2; turn = \"free\"; hud_scale = 0.5; };\n";
+
+static void the_hand_is_bound(void **state)
+{
+	struct gr_diag diag = { 0 };
+	struct layout *layout = parse(hand, &diag), *again = NULL;
+	char *text = NULL;
+	size_t len = 0;
+	FILE *file = open_memstream(&text, &len);
+
+	(void)state;
+	unit_diag_print(&diag);
+	assert_int_equal(diag.count, 0);
+	assert_int_equal(layout->trackers[1].kind, LAYOUT_TRACKER_WINDOW);
+	assert_true(!layout->trackers[1].head && layout->trackers[1].wand);
+	assert_false(layout_tracker_is_device(&layout->trackers[1]));
+	assert_int_equal(layout->hand.next, 3);
+	assert_int_equal(layout->hand.fly, 0);
+	assert_int_equal(layout->hand.drag, 1);
+	assert_int_equal(layout->hand.lamps, -1);
+	assert_int_equal(layout->hand.hue, 2);
+	assert_int_equal(layout->hand.turn, LAYOUT_TURN_FREE);
+	assert_true(layout->hand.hud);
+	assert_int_equal(layout_write(file, layout), GR_OK);
+	fclose(file);
+	assert_int_equal(layout_text_parse(text, &again, &diag), GR_OK);
+	unit_diag_print(&diag);
+	assert_int_equal(diag.count, 0);
+	assert_memory_equal(&again->hand, &layout->hand, sizeof again->hand);
+	/* The master alone reads it: walls need not agree. */
+	again->hand.next = 7;
+	layout_items(again, NULL, 0, again->hash);
+	assert_memory_equal(again->hash, layout->hash, sizeof again->hash);
+	layout_destroy(&layout);
+	layout_destroy(&again);
+	gr_diag_finish(&diag);
+	free(text);
+}
+
+static const struct layout_fault hand_faults[] = {
+	{ "drag = 1;", "drag = 0;", "drag = 0", "hand.drag",
+	  "button 0 is fly already in navigation; give it another, or -1 for none", 1 },
+	{ "drag = 1;", "drag = 1; next = 0;", "next = 0", "hand.fly", "button 0 is next already in navigation", 3 },
+	{ "hue = 2", "hue = 0", "hue = 0", "hand.hue", "axis 0 is saturation already in lighting", 1 },
+	{ "drag = 1;", "drag = 32;", "drag = 32", "hand.drag", "32 is outside -1 to 31", 1 },
+	{ "hud_scale = 0.5", "hud_scale = 0.0", "hud_scale", "hand.hud_scale", "0 is outside 0.1 to 10", 1 },
+	{ "turn = \"free\"", "turn = \"fre\"", "turn", "hand.turn", "did you mean \"free\"?", 1 },
+	{ "drag = 1;", "drga = 1;", "drga", "hand.drga", "did you mean \"drag\"?", 1 },
+	{ "kind = \"sim\"; wand = false;", "kind = \"sim\";", "keys", "trackers[1].wand",
+	  "tracker \"walker\" tracks the wand already", 1 },
+	{ "kind = \"window\";", "kind = \"window\"; wand = false;", "keys", "trackers[1]",
+	  "tracks neither head nor wand", 1 },
+};
+
+static void faults_of_the_hand_are_named(void **state)
+{
+	unsigned bad = 0;
+
+	(void)state;
+	for (size_t i = 0; i < sizeof hand_faults / sizeof *hand_faults; i++)
+		bad += layout_text_check_fault(&hand_faults[i], layout_text, hand);
+	assert_int_equal(bad, 0);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(what_it_says_is_there),
 		cmocka_unit_test(written_and_read_again),
 		cmocka_unit_test(faults_are_named),
+		cmocka_unit_test(the_hand_is_bound),
+		cmocka_unit_test(faults_of_the_hand_are_named),
 		cmocka_unit_test(a_device_needs_bindings),
 		cmocka_unit_test(a_polhemus_has_a_group_of_its_own),
 		cmocka_unit_test(faults_of_a_polhemus_are_named),

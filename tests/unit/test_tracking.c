@@ -2,6 +2,8 @@
 #include "tests/unit/visitor.h"
 
 #include "base/clock.h"
+#include "base/result.h"
+#include "tracking/window.h"
 
 #define MS GR_NS_PER_MS
 #define S GR_NS_PER_S
@@ -227,9 +229,70 @@ static void test_prediction_error(void **state)
 	predict(TRACK_FILTER_EXPONENTIAL, 12e-3);
 }
 
+static struct track_sample ask_window(struct track_source *source, int64_t now_ns)
+{
+	struct track_sample sample = { .valid = false };
+
+	assert_int_equal(track_poll(source, now_ns, &sample, 1), 1);
+	assert_true(sample.valid && sample.body == TRACK_WAND && gr_pose_valid(&sample.T_room_body));
+	return sample;
+}
+
+/* Keyboard and mouse of the nodes' windows. */
+static void windows_make_a_wand(void **state)
+{
+	const struct gr_pose head = { { 0, 1.2f, 0 }, { 0, 0, 0, 1 } };
+	const struct gr_pose start = { { 0, 1.0f, -0.4f }, { 0, 0, 0, 1 } };
+	struct track_window_input in = { .buttons = 1 };
+	const vec3 ahead = { 0, 0, -1 };
+	struct track_source *source;
+	struct track_sample sample;
+	vec3 to;
+
+	(void)state;
+	assert_int_equal(track_window_create(&source, &head, &start), GR_OK);
+	assert_int_equal(track_poll(source, 100, &sample, 1), 0); /* nobody has touched a window */
+	track_window_feed(source, 3, &in, 200);
+	sample = ask_window(source, 300);
+	assert_int_equal(sample.buttons, 1);
+	assert_vector(sample.T_room_body.p, 0, 1, (double)-0.4f);
+	assert_int_equal(track_poll(source, 300, &sample, 1), 0); /* times ascend */
+	in.pointer[0] = 1;
+	in.pointer[1] = 1;
+	in.wheel = 4;
+	in.axes[1] = -1;
+	track_window_feed(source, 3, &in, 400);
+	sample = ask_window(source, 500);
+	gr_pose_direction(&sample.T_room_body, ahead, to);
+	/* 45 degrees to the right and 30 up, twice as far away. */
+	assert_vector(to, sin(M_PI / 4) * cos(M_PI / 6), sin(M_PI / 6), -cos(M_PI / 4) * cos(M_PI / 6));
+	assert_vector(sample.T_room_body.p, 0, 1, -0.8);
+	assert_int_equal(sample.axis_count, 2);
+	assert_float_equal(sample.axes[1], -1, 0);
+	/* Another window's keys count as well; the pointer is whose moved last. */
+	in = (struct track_window_input){ .buttons = 4, .axes = { 1, -1 } };
+	track_window_feed(source, 5, &in, 600);
+	sample = ask_window(source, 700);
+	assert_int_equal(sample.buttons, 5);
+	assert_float_equal(sample.axes[0], 1, 0);
+	assert_float_equal(sample.axes[1], -1, 0); /* not beyond */
+	/* The wheel ends somewhere, and a window that falls silent holds nothing. */
+	in.wheel = -1000;
+	track_window_feed(source, 5, &in, 800);
+	sample = ask_window(source, TRACK_WINDOW_SILENT_NS + 500);
+	assert_vector(sample.T_room_body.p, 0, 1, -0.1);
+	assert_int_equal(sample.buttons, 4);
+	sample = ask_window(source, TRACK_WINDOW_SILENT_NS + 900);
+	assert_int_equal(sample.buttons, 0);
+	track_window_feed(source, TRACK_WINDOWS, &in, TRACK_WINDOW_SILENT_NS + 950);
+	assert_int_equal(ask_window(source, TRACK_WINDOW_SILENT_NS + 1000).buttons, 0);
+	track_source_destroy(&source);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(windows_make_a_wand),
 		cmocka_unit_test(test_history_empty),
 		cmocka_unit_test(test_history_mixes),
 		cmocka_unit_test(test_history_goes_on_and_comes_back),
