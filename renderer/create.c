@@ -35,6 +35,7 @@ static void plan_light(struct renderer *r)
 	const struct scene_file *file = r->file;
 
 	r->file_steps = file->gi.steps;
+	r->file_gathers = file->gi.gathers;
 	if (file->gi.method != SCENE_GI_AUTO) {
 		gi_facts_take(&r->light.facts, r->scene, file);
 		return;
@@ -167,6 +168,8 @@ static int create_pictures(struct renderer *r)
 	}
 	if (result == GR_OK)
 		result = create_tone(r);
+	if (result == GR_OK && r->params.wall_given)
+		result = hud_create(&r->hud);
 	if (result == GR_OK)
 		result = timers_create(&r->timers);
 	if (result == GR_OK) {
@@ -297,6 +300,7 @@ void renderer_destroy(struct renderer **renderer)
 	glDeleteSync(r->fence);
 	glDeleteBuffers(1, &r->frame_buffer);
 	timers_destroy(&r->timers);
+	hud_destroy(&r->hud);
 	tone_destroy(&r->tone);
 	backdrop_finish(&r->backdrop);
 	for (int i = 0; i < EYES_MAX; i++) {

@@ -53,6 +53,8 @@ void render_frame_init(struct render_frame *frame, const struct scene_file *file
 		.eye_separation_m = EYE_SEPARATION_M,
 		.gi_on = file->gi.method != SCENE_GI_NONE,
 		.gi_steps = file->gi.steps,
+		.gi_gathers = file->gi.gathers,
+		.gi_refine = 1,
 		.gi_incremental = file->gi.incremental,
 		.absorption_per_m = file->absorption_per_m,
 		.scattering_per_m = file->scattering_per_m,
@@ -64,6 +66,7 @@ void render_frame_init(struct render_frame *frame, const struct scene_file *file
 		.tone_bias = file->tone.bias,
 		.gamma_encode = file->tone.gamma_end_to_end / file->tone.gamma_display,
 		.srgb = file->tone.srgb,
+		.hand = { .T_room_wand = GR_POSE_IDENTITY, .scale = 1, .torch = -1 },
 	};
 	frame->T_room_head.p[1] = EYE_HEIGHT_M;
 	for (size_t i = 0; i < file->lamp_count && i < SCENE_MAX_LAMPS; i++)

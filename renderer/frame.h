@@ -20,6 +20,18 @@ struct frame_lamp {
 	vec3 intensity; /* W/sr, directional: W/m^2 */
 };
 
+/* What the hand does, for the HUD beside the wand (seed 004, "User Interaction"). */
+enum frame_hand_mode { FRAME_HAND_NAVIGATION, FRAME_HAND_LIGHTING, FRAME_HAND_SETTINGS, FRAME_HAND_MODES };
+struct frame_hand {
+	bool shown; /* else nothing of it is drawn */
+	struct gr_pose T_room_wand;
+	float scale; /* of the HUD, > 0 */
+	enum frame_hand_mode mode;
+	int torch; /* lamp that lighting is about, -1: none */
+	float torch_hue; /* turns, also where it is grey */
+	bool quality;
+};
+
 struct render_frame {
 	uint64_t frame;
 	struct gr_pose T_scene_room;
@@ -28,7 +40,8 @@ struct render_frame {
 	struct frame_lamp lamps[SCENE_MAX_LAMPS]; /* as many as the scene file has */
 	bool gi_on;
 	uint64_t gi_epoch; /* a change restarts the light at its steady state */
-	int gi_steps;
+	int gi_steps, gi_gathers; /* gathers 0: as the scene file has it */
+	int gi_refine; /* so many times the steps and gathers are done, >= 1 */
 	float gi_incremental;
 	float absorption_per_m, scattering_per_m;
 	float exposure;
@@ -38,6 +51,7 @@ struct render_frame {
 	float tone_bias;
 	float gamma_encode; /* gamma_end_to_end / gamma_display, seed 004 section 3.3.6 */
 	bool srgb;
+	struct frame_hand hand;
 };
 
 /*

@@ -64,20 +64,29 @@ static bool draw_shadow(struct renderer *r, const struct render_frame *frame, bo
 	return lamps || emissive;
 }
 
+static int times(int count, int factor, int most)
+{
+	return count < most / factor ? count * factor : most;
+}
+
 /*
- * The steps of a plan stand in for the file's, which the master sends with each
- * frame; a number that was set while running counts as it is.
+ * The steps and gathers of a plan stand in for the file's, which the master
+ * sends with each frame; a number that was set while running counts as it is.
  */
 static int update_method(struct renderer *r, const struct render_frame *frame,
 			 const struct gi_light *light)
 {
-	struct render_frame planned;
+	struct render_frame asked = *frame;
 
-	if (!r->is_planned || frame->gi_steps != r->file_steps)
-		return r->gi->ops->update(r->gi, frame, light);
-	planned = *frame;
-	planned.gi_steps = r->light.plan.gi.steps;
-	return r->gi->ops->update(r->gi, &planned, light);
+	if (r->is_planned && frame->gi_steps == r->file_steps)
+		asked.gi_steps = r->light.plan.gi.steps;
+	if (r->is_planned && frame->gi_gathers == r->file_gathers)
+		asked.gi_gathers = r->light.plan.gi.gathers;
+	if (frame->gi_refine > 1) {
+		asked.gi_steps = times(asked.gi_steps, frame->gi_refine, GI_STEPS_MOST);
+		asked.gi_gathers = times(asked.gi_gathers, frame->gi_refine, GI_GATHERS_MOST);
+	}
+	return r->gi->ops->update(r->gi, &asked, light);
 }
 
 /* The light field. *changed is set when it is another one. */
@@ -130,7 +139,7 @@ static bool take_tone(struct renderer *r, const struct render_frame *frame)
 }
 
 /* Where an eye is in the scene and what it sees the wall through. */
-static int eye_view(const struct renderer *r, int index, const struct render_frame *frame,
+static int eye_view(struct renderer *r, int index, const struct render_frame *frame,
 		    const struct scene_camera *camera, mat4 view_projection, vec3 position)
 {
 	struct projection p;
@@ -148,6 +157,7 @@ static int eye_view(const struct renderer *r, int index, const struct render_fra
 		return result;
 	}
 	eyes_position(r->params.eyes, index, frame, eye);
+	memcpy(r->eyes[index].position_room, eye, sizeof(vec3));
 	result = projection_off_axis(&r->params.wall, eye, r->file->near_m, r->file->far_m, &p);
 	if (result == GR_OK) {
 		struct gr_pose T_room_scene;
@@ -200,15 +210,33 @@ static int draw_eye(struct renderer *r, int index, const struct render_frame *fr
 	return GR_OK;
 }
 
-static void tone_eye(struct renderer *r, int index)
+/* The finished picture; hud: what is in the hand is seen from there. */
+static void show_eye(struct renderer *r, int index, bool hud)
 {
 	const struct eyes_place place = eyes_place(&r->params, index);
+	struct renderer_eye *eye = &r->eyes[index];
 
+	/* of a window's two back buffers the framebuffer says nothing */
+	target_bind(r->target, place.buffer, false);
 	timers_begin(r->timers, STAGE_TONE, "tone");
 	tone_draw(r->tone, &r->tone_values, r->eyes[index].picture.radiance,
 		  target_framebuffer(r->target, place.buffer), place.x, place.y, r->params.width,
 		  r->params.height);
 	timers_end(r->timers, STAGE_TONE);
+	if (!hud)
+		return;
+	const struct hud_eye from = {
+		.wall = &r->params.wall,
+		.position = { eye->position_room[0], eye->position_room[1], eye->position_room[2] },
+		.position_scene = { eye->position[0], eye->position[1], eye->position[2] },
+		.gbuffer = &eye->gbuffer,
+		.x = place.x,
+		.y = place.y,
+	};
+
+	timers_begin(r->timers, STAGE_HUD, "hud");
+	hud_draw(r->hud, &from);
+	timers_end(r->timers, STAGE_HUD);
 }
 
 /* What went wrong in the frame, counted; a line a minute. */
@@ -250,6 +278,7 @@ static int draw_frame(struct renderer *r, const struct render_frame *frame,
 	bool light = draw_shadow(r, frame, medium) || medium;
 	int result = update_gi(r, frame, &light);
 	bool tone = take_tone(r, frame);
+	bool hud = r->hud && hud_take(r->hud, camera ? NULL : frame, r->file);
 
 	if (result < 0)
 		return result;
@@ -257,12 +286,12 @@ static int draw_frame(struct renderer *r, const struct render_frame *frame,
 	for (int i = 0; i < r->eye_count; i++) {
 		/* a window forgets its picture at the swap, a framebuffer does not */
 		bool forgets = target_framebuffer(r->target, eyes_place(&r->params, i).buffer) == 0;
-		bool drawn;
+		bool drawn, seen = draw_eye(r, i, frame, camera, light, &drawn) == GR_OK;
 
-		if (draw_eye(r, i, frame, camera, light, &drawn) != GR_OK)
+		if (!seen)
 			result = GR_NOTHING;
-		if (drawn || tone || forgets)
-			tone_eye(r, i);
+		if (drawn || tone || forgets || (hud && seen))
+			show_eye(r, i, seen && r->hud && hud_shown(r->hud));
 	}
 	end_frame(r);
 	return result;
@@ -284,6 +313,9 @@ static bool frame_valid(const struct renderer *r, const struct render_frame *fra
 	for (size_t i = 0; i < r->file->lamp_count; i++)
 		if (frame->lamps[i].on && !lamp_valid(&frame->lamps[i]))
 			return false;
+	if (frame->hand.shown && (!gr_pose_valid(&frame->hand.T_room_wand) ||
+				  !isfinite(frame->hand.scale) || frame->hand.scale <= 0))
+		return false;
 	return gr_pose_valid(&frame->T_scene_room) && gr_pose_valid(&frame->T_room_head) &&
 	       isfinite(frame->eye_separation_m) && frame->absorption_per_m >= 0 &&
 	       frame->scattering_per_m >= 0 && isfinite(frame->absorption_per_m) &&

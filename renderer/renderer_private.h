@@ -13,12 +13,13 @@
 #include "renderer/view/emissive.h"
 #include "renderer/view/eyes.h"
 #include "renderer/view/gbuffer.h"
+#include "renderer/view/hud.h"
 #include "renderer/view/shade.h"
 #include "renderer/view/shadow.h"
 
 #include <epoxy/gl.h>
 
-enum renderer_stage { STAGE_SHADOW, STAGE_GI, STAGE_GBUFFER, STAGE_SHADE, STAGE_TONE };
+enum renderer_stage { STAGE_SHADOW, STAGE_GI, STAGE_GBUFFER, STAGE_SHADE, STAGE_TONE, STAGE_HUD };
 
 /* One eye's picture and what it was drawn from. */
 struct renderer_eye {
@@ -26,6 +27,7 @@ struct renderer_eye {
 	struct shade_picture picture;
 	mat4 view_projection;
 	vec3 position; /* scene */
+	vec3 position_room;
 	bool drawn;    /* at least once */
 };
 
@@ -38,7 +40,7 @@ struct renderer {
 	struct light_plan light;     /* of it; else the facts alone */
 	size_t surfels;              /* 0: none */
 	struct scene_file planned;   /* the file with the plan's gi; all else borrowed */
-	int file_steps;              /* propagation steps that the file says */
+	int file_steps, file_gathers; /* a frame, that the file says */
 	struct gl_mesh *mesh;
 	struct rsm *rsm;                 /* NULL: no global illumination, or no light for it */
 	struct shadow_stage *shadow;     /* NULL: no lamps */
@@ -47,6 +49,7 @@ struct renderer {
 	struct gi_choice choice;
 	struct backdrop backdrop;
 	struct tone_stage *tone;
+	struct hud_stage *hud; /* NULL: no wall, no hand before it */
 	struct timers *timers;
 	unsigned gbuffer_program, shade_program;
 	unsigned irradiance_program; /* 0: nobody has asked yet */

@@ -60,6 +60,12 @@ tests_accuracy_test_stereo_SOURCES = tests/accuracy/test_stereo.c $(VIEW_TEST_SH
 tests_accuracy_test_stereo_CFLAGS = $(VIEW_TEST_CFLAGS)
 tests_accuracy_test_stereo_LDADD = $(VIEW_TEST_LIBS)
 
+check_PROGRAMS += tests/accuracy/test_hud
+TESTS += tests/accuracy/test_hud
+tests_accuracy_test_hud_SOURCES = tests/accuracy/test_hud.c $(VIEW_TEST_SHARED)
+tests_accuracy_test_hud_CFLAGS = $(VIEW_TEST_CFLAGS)
+tests_accuracy_test_hud_LDADD = $(VIEW_TEST_LIBS)
+
 check_PROGRAMS += tests/accuracy/test_rsm
 TESTS += tests/accuracy/test_rsm
 tests_accuracy_test_rsm_SOURCES = tests/accuracy/test_rsm.c $(VIEW_TEST_SHARED)

@@ -46,6 +46,10 @@ struct gi_stats {
 	double residual;      /* largest change since the frame before (after a restart: of the last step) over the largest value, some frames old; -1 unknown */
 };
 
+/* Most steps and gathers of a frame, as the parameters have it; refining goes no further. */
+#define GI_STEPS_MOST 128
+#define GI_GATHERS_MOST 16
+
 /* What a method wants to be given every frame; what none wants is not drawn. */
 enum gi_need {
 	GI_NEEDS_RSM = 1,   /* reflective shadow maps */

@@ -270,6 +270,7 @@ static void thesis_frame(struct lpv *lpv, const struct render_frame *frame, bool
 	if (!restart && lpv->thesis.energy > 0)
 		last = energy / lpv->thesis.energy * incremental;
 	lpv->thesis.energy = energy;
+	lpv->thesis.steps = steps;
 	lpv_thesis_frame(lpv, last, last > 0 ? 1 - incremental : 1, steps);
 }
 
@@ -289,7 +290,7 @@ static int update(struct gi_method *method, const struct render_frame *frame,
 	lpv->stats.steps = 0;
 	if (!frame->gi_on)
 		return GR_NOTHING;
-	if (restart || medium || lamps)
+	if (restart || medium || lamps || (lpv->is_thesis && steps != lpv->thesis.steps))
 		lpv->steps_since_change = 0;
 	else if (lpv->steps_since_change >= lpv->settle_steps)
 		return GR_NOTHING;

@@ -68,6 +68,7 @@ struct lpv_thesis {
 	unsigned table;
 	int newest;   /* 0 or 1: which three */
 	float energy; /* of the last frame's lamps (section 3.4) */
+	int steps;    /* of the last frame: it is lit by as many, another number is another light */
 };
 
 /* From darkness to the steady state (lpv_start.c). */

@@ -122,8 +122,13 @@ static void restart(struct surfels *s, bool lamps)
 	s->stats.steps = s->settle_gathers;
 }
 
+static int gathers(const struct surfels *s, const struct render_frame *frame)
+{
+	return frame->gi_gathers > 0 ? frame->gi_gathers : s->params.gathers;
+}
+
 /* This node does it all: as many gathers as asked for, until the change has settled. */
-static bool update_all(struct surfels *s, bool changed, bool lamps)
+static bool update_all(struct surfels *s, int count, bool changed, bool lamps)
 {
 	const struct surfels_run all = { 0, (uint32_t)s->count };
 
@@ -134,10 +139,10 @@ static bool update_all(struct surfels *s, bool changed, bool lamps)
 		return false;
 	}
 	s->lit = true;
-	for (int i = 0; i < s->params.gathers; i++)
+	for (int i = 0; i < count; i++)
 		surfels_gather(s, all);
-	s->since_change += s->params.gathers;
-	s->stats.steps = s->params.gathers;
+	s->since_change += count;
+	s->stats.steps = count;
 	surfels_smooth(s);
 	surfels_check_begin(s, all);
 	surfels_probes_gather(s);
@@ -149,7 +154,7 @@ static bool update_all(struct surfels *s, bool changed, bool lamps)
  * This node does its slice. A bounce crosses to another slice once a frame, so
  * frames are counted here and not gathers.
  */
-static bool update_slice(struct surfels *s, bool changed, bool lamps)
+static bool update_slice(struct surfels *s, int count, bool changed, bool lamps)
 {
 	const struct surfels_run own = surfels_share_run(s, s->share.index);
 	bool arrived = surfels_share_apply(s);
@@ -171,13 +176,13 @@ static bool update_slice(struct surfels *s, bool changed, bool lamps)
 	if (changed || !s->lit)
 		surfels_relight(s, own, lamps);
 	s->lit = true;
-	for (int i = 0; i < s->params.gathers; i++)
+	for (int i = 0; i < count; i++)
 		surfels_gather(s, own);
 	surfels_check_begin(s, own);
 	surfels_check_end(s);
 	surfels_share_pack(s);
 	s->since_change++;
-	s->stats.steps = s->params.gathers;
+	s->stats.steps = count;
 	return true;
 }
 
@@ -214,8 +219,9 @@ static int update(struct gi_method *method, const struct render_frame *frame,
 			surfels_share_recut(s);
 			surfels_smooth(s);
 		}
-		ran = s->share.count > 1 ? update_slice(s, changed, light->lamps)
-					 : update_all(s, changed, light->lamps);
+		ran = s->share.count > 1 ?
+			      update_slice(s, gathers(s, frame), changed, light->lamps) :
+			      update_all(s, gathers(s, frame), changed, light->lamps);
 	}
 	s->started = true;
 	s->stats.ran = ran;

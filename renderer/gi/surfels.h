@@ -30,7 +30,7 @@
 #define SURFELS_SLICES_MAX 64
 
 struct surfels_params {
-	int gathers; /* a frame, >= 1 */
+	int gathers; /* a frame, >= 1, unless the frame says another number */
 	bool probes; /* shade from the probes; the set must have some */
 	bool lamps;  /* the scene has any: update() will be given them */
 };

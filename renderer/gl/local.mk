@@ -4,7 +4,7 @@ RENDERER_SOURCES += \
 	renderer/gl/swap_group.c renderer/gl/swap_group.h renderer/gl/program.c renderer/gl/program.h \
 	renderer/gl/shader_text.c renderer/gl/shader_text.h renderer/gl/shaders.h \
 	renderer/gl/target.c renderer/gl/target.h renderer/gl/target_egl.c \
-	renderer/gl/target_glfw.c renderer/gl/target_private.h \
+	renderer/gl/target_glfw.c renderer/gl/target_input.c renderer/gl/target_private.h \
 	renderer/gl/timer.c renderer/gl/timer.h \
 	renderer/image/compare.c renderer/image/compare.h renderer/image/compare_flip.c \
 	renderer/image/compare_ssim.c renderer/image/convolve.c renderer/image/convolve.h \

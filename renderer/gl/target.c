@@ -246,6 +246,14 @@ bool target_poll(struct target *target)
 	return !target->ops->poll || target->ops->poll(target);
 }
 
+bool target_input(const struct target *target, struct target_input *out)
+{
+	if (!target->ops->input)
+		return false;
+	target->ops->input(target, out);
+	return true;
+}
+
 const char *target_renderer_name(const struct target *target)
 {
 	return target->renderer;

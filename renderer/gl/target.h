@@ -59,6 +59,18 @@ int target_barrier_join(struct target *target, char *why, size_t size);
 void target_barrier_leave(struct target *target);
 /* Takes what the window system says while nothing is shown. False when the window was closed. */
 bool target_poll(struct target *target);
+/*
+ * Keyboard and mouse, as target_swap or target_poll found them. Keys and mouse
+ * buttons are buttons of the hand by their number (target_input.c).
+ */
+struct target_input {
+	uint32_t buttons;
+	float axes[2];    /* arrow keys: -1..1, right and up + */
+	float pointer[2]; /* -1..1 across the window, right and up + */
+	float wheel;      /* turned so far, notches, away from the person + */
+};
+/* False without a window: *out untouched. */
+bool target_input(const struct target *target, struct target_input *out);
 /* "llvmpipe (LLVM 15.0.6, 256 bits)", for log and summary. */
 const char *target_renderer_name(const struct target *target);
 const char *target_platform_name(const struct target *target);

@@ -12,12 +12,21 @@
 
 struct glfw_backend {
 	GLFWwindow *window;
+	double wheel; /* notches so far */
 	bool initialised;
 };
 
 static void glfw_says(int code, const char *text)
 {
 	gr_warning("glfw 0x%x: %s", (unsigned)code, text);
+}
+
+static void glfw_scrolled(GLFWwindow *window, double x, double y)
+{
+	struct glfw_backend *glfw = glfwGetWindowUserPointer(window);
+
+	(void)x;
+	glfw->wheel += y;
 }
 
 static int find_monitor(const struct target_params *params, GLFWmonitor **out)
@@ -148,6 +157,9 @@ static int open_window(struct target *target, const struct target_params *params
 		log_what_is_there(params, target->platform);
 		return GR_ERR_UNSUPPORTED;
 	}
+	glfwSetWindowUserPointer(glfw->window, glfw);
+	glfwSetScrollCallback(glfw->window, glfw_scrolled);
+	target_input_watch(glfw->window);
 	if (monitor)
 		glfwSetInputMode(glfw->window, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
 	glfwMakeContextCurrent(glfw->window);
@@ -192,6 +204,13 @@ static bool glfw_poll(struct target *target)
 	return !glfwWindowShouldClose(glfw->window);
 }
 
+static void glfw_input(const struct target *target, struct target_input *out)
+{
+	const struct glfw_backend *glfw = target->backend;
+
+	target_input_read(glfw->window, glfw->wheel, out);
+}
+
 static bool glfw_swap(struct target *target)
 {
 	struct glfw_backend *glfw = target->backend;
@@ -218,6 +237,7 @@ const struct target_ops target_glfw_ops = {
 	.open = glfw_open,
 	.swap = glfw_swap,
 	.poll = glfw_poll,
+	.input = glfw_input,
 	.close = glfw_close,
 	.offscreen = false,
 };

@@ -12,9 +12,16 @@ struct target_ops {
 	int (*open)(struct target *target, const struct target_params *params);
 	bool (*swap)(struct target *target);
 	bool (*poll)(struct target *target); /* NULL: nobody can say anything */
+	/* NULL: there is no window. */
+	void (*input)(const struct target *target, struct target_input *out);
 	void (*close)(struct target *target); /* also after a failed open */
 	bool offscreen;                       /* draws into framebuffers of its own */
 };
+
+struct GLFWwindow;
+/* target_input.c: of a window, once; and what is down in it. */
+void target_input_watch(struct GLFWwindow *window);
+void target_input_read(struct GLFWwindow *window, double wheel, struct target_input *out);
 
 extern const struct target_ops target_egl_ops;
 extern const struct target_ops target_glfw_ops;

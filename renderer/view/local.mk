@@ -10,6 +10,8 @@ RENDERER_SOURCES += \
 	renderer/view/env_sh.c renderer/view/env_sh.h \
 	renderer/view/eyes.c renderer/view/eyes.h \
 	renderer/view/gbuffer.c renderer/view/gbuffer.h \
+	renderer/view/hud.c renderer/view/hud.h renderer/view/hud_bars.c \
+	renderer/view/hud_parts.c renderer/view/hud_parts.h renderer/view/hud_private.h \
 	renderer/view/maps.c renderer/view/maps.h \
 	renderer/view/patches.c renderer/view/patches.h \
 	renderer/view/projection.c renderer/view/projection.h \
@@ -21,7 +23,8 @@ SHADERS += \
 	renderer/shaders/env_sh.glsl renderer/shaders/env_sh_bands.comp \
 	renderer/shaders/env_sh_rows.comp renderer/shaders/env_sh_turn.comp \
 	renderer/shaders/depth.vert renderer/shaders/gbuffer.frag \
-	renderer/shaders/gi_none.glsl renderer/shaders/lamp.glsl \
+	renderer/shaders/gi_none.glsl renderer/shaders/hud.frag renderer/shaders/hud.vert \
+	renderer/shaders/lamp.glsl \
 	renderer/shaders/lamp_shadow.glsl renderer/shaders/medium.glsl \
 	renderer/shaders/patch.glsl renderer/shaders/patch_shadow.glsl \
 	renderer/shaders/rsm.frag renderer/shaders/screen.vert renderer/shaders/shade.frag \
