@@ -1,6 +1,7 @@
 #include "daemon/live_source.h"
 
 #include "base/result.h"
+#include "protocol/input.h"
 
 #include <math.h>
 #include <string.h>
@@ -47,6 +48,18 @@ void live_source_init(struct live_source *live, const struct layout *layout,
 	};
 	master_state_init(&live->scene_state, layout, scene);
 	master_state_start_input(&live->scene_state, &live->input);
+}
+
+void live_source_window_input(struct live_source *live, unsigned node, const struct fdp_input *input,
+			      int64_t now_ns)
+{
+	struct track_window_input in = { .buttons = input->buttons, .wheel = input->wheel };
+
+	memcpy(in.axes, input->axes, sizeof in.axes);
+	memcpy(in.pointer, input->pointer, sizeof in.pointer);
+	/* With the frame clock time goes by frames: what is held counts until another word comes. */
+	trackers_window_input(live->trackers, node, &in,
+			      live->frame_clock ? live->last_time_ns : live->base_ns + now_ns - live->start_ns);
 }
 
 void live_source_adopt(struct live_source *live, const struct param_state *params, uint64_t last,

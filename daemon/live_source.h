@@ -27,6 +27,11 @@ struct live_source {
 void live_source_init(struct live_source *live, const struct layout *layout,
 		      const struct scene_file *scene, struct trackers *trackers, bool frame_clock);
 
+struct fdp_input;
+/* What was done at a node's window; now_ns: CLOCK_MONOTONIC. */
+void live_source_window_input(struct live_source *live, unsigned node, const struct fdp_input *input,
+			      int64_t now_ns);
+
 /*
  * Goes on from another master's frame, which was shown at about frame_ns: scene time
  * has gone on since. Frame numbers go on from `last`.

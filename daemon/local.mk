@@ -5,11 +5,15 @@ daemon_libgdaemon_a_SOURCES = \
 	daemon/dropped.c daemon/dropped.h \
 	daemon/faults.c daemon/faults.h daemon/faults_control.c \
 	daemon/frame_stats.c daemon/frame_stats.h \
+	daemon/hand.c daemon/hand.h daemon/hand_private.h \
+	daemon/hand_color.c daemon/hand_color.h \
+	daemon/hand_lighting.c daemon/hand_navigation.c daemon/hand_params.c \
 	daemon/histogram.c daemon/histogram.h \
 	daemon/json.c daemon/json.h \
 	daemon/frame_source.h \
 	daemon/live_source.c daemon/live_source.h \
 	daemon/loop.c daemon/loop.h \
+	daemon/master_input.h \
 	daemon/master_params.h \
 	daemon/master_settings.c daemon/master_settings.h \
 	daemon/master_state.c daemon/master_state.h \
@@ -57,6 +61,7 @@ daemon_grotto_master_LDADD = $(DAEMON_LIBS)
 daemon_grotto_node_SOURCES = \
 	daemon/node.c daemon/node.h \
 	daemon/node_control.c daemon/node_control.h \
+	daemon/node_input.c daemon/node_input.h \
 	daemon/node_light.c daemon/node_light.h \
 	daemon/node_main.c \
 	daemon/node_report.c \

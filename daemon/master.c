@@ -44,6 +44,14 @@ static void on_report(void *ctx, unsigned node, unsigned kind, const struct fdp_
 		m->source->ops->held(m->source, node, report->frame, report->hash);
 }
 
+static void on_input(void *ctx, unsigned node, const struct fdp_input *input)
+{
+	struct master *m = ctx;
+
+	if (m->params.live)
+		live_source_window_input(m->params.live, node, input, m->heard_ns);
+}
+
 static void on_sample(void *ctx, size_t tracker, const struct track_sample *sample, bool taken)
 {
 	struct master *m = ctx;
@@ -399,7 +407,7 @@ static int create_protocol(struct master *m)
 		.share_bytes = m->params.scene->gi.share == SCENE_SHARE_CLUSTER ? FDP_SHARE_MAX : 0,
 	};
 	struct fdp_master_ops ops = {
-		.send = send_datagram, .event = master_on_event, .report = on_report, .ctx = m
+		.send = send_datagram, .event = master_on_event, .report = on_report, .input = on_input, .ctx = m
 	};
 	int r;
 

@@ -253,6 +253,7 @@ static void write_settings(struct json *json, const struct master *m)
 	json_open(json, "settings", '{');
 	json_u64(json, "gi_on", s->gi_on);
 	json_u64(json, "gi_steps", s->gi_steps);
+	json_u64(json, "gi_gathers", s->gi_gathers);
 	json_f64(json, "gi_incremental", (double)s->gi_incremental);
 	json_f64(json, "absorption", (double)s->absorption);
 	json_f64(json, "scattering", (double)s->scattering);
@@ -267,6 +268,25 @@ static void write_settings(struct json *json, const struct master *m)
 	for (size_t i = 0; i < m->params.scene->lamp_count && i < PARAM_MAX_LAMPS; i++)
 		json_bool(json, m->params.scene->lamps[i].name, s->lamp_on >> i & 1);
 	json_close(json, '}');
+	json_close(json, '}');
+}
+
+static void write_hand(struct json *json, const struct master *m)
+{
+	const struct hand *hand = &m->params.live->scene_state.hand;
+
+	json_open(json, "hand", '{');
+	json_string(json, "layout", hand_mode_name(hand->mode));
+	json_u64(json, "buttons", hand->buttons);
+	json_bool(json, "quality", hand->quality);
+	if (hand->torch >= 0) {
+		json_string(json, "torch", m->params.scene->lamps[hand->torch].name);
+		json_bool(json, "put_down", hand->put_down);
+	}
+	json_open(json, "room_m", '[');
+	for (int i = 0; i < 3; i++)
+		json_f64(json, NULL, (double)m->params.live->scene_state.T_scene_room.p[i]);
+	json_close(json, ']');
 	json_close(json, '}');
 }
 
@@ -295,6 +315,7 @@ int master_write_json(const struct master *m, int64_t now_ns, char *text, size_t
 	if (m->params.live) {
 		write_tracking(&json, m, now_ns);
 		write_settings(&json, m);
+		write_hand(&json, m);
 	}
 	if (m->params.replay)
 		write_replay(&json, m);

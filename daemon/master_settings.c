@@ -22,6 +22,7 @@ struct simple_setting {
 static const struct simple_setting simple[] = {
 	{ "gi_on", PARAM_GI_ON, true, AT(gi_on) },
 	{ "gi_steps", PARAM_GI_STEPS, true, AT(gi_steps) },
+	{ "gi_gathers", PARAM_GI_GATHERS, true, AT(gi_gathers) },
 	{ "gi_incremental", PARAM_GI_INCREMENTAL, false, AT(gi_incremental) },
 	{ "absorption", PARAM_ABSORPTION, false, AT(absorption) },
 	{ "scattering", PARAM_SCATTERING, false, AT(scattering) },
@@ -41,6 +42,7 @@ void master_settings_init(struct master_settings *settings, const struct scene_f
 	*settings = (struct master_settings){
 		.gi_on = scene->gi.method != SCENE_GI_NONE,
 		.gi_steps = (uint32_t)scene->gi.steps,
+		.gi_gathers = (uint32_t)scene->gi.gathers,
 		.tone_curve = scene->tone.curve,
 		.gi_incremental = scene->gi.incremental,
 		.absorption = scene->absorption_per_m,

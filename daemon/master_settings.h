@@ -12,7 +12,7 @@
 #include <stdint.h>
 
 struct master_settings {
-	uint32_t gi_on, gi_steps, tone_curve;
+	uint32_t gi_on, gi_steps, gi_gathers, tone_curve;
 	float gi_incremental, absorption, scattering, exposure, gamma_encode, eye_separation;
 	float adaptation, luminance_max, tone_bias; /* of the tone curve; cd/m^2, cd/m^2 */
 	uint32_t lamp_on;                     /* bit i: lamp i of the scene file */

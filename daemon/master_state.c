@@ -1,13 +1,9 @@
 #include "daemon/master_state.h"
 
-#include "base/clock.h"
 #include "base/result.h"
 
 #include <math.h>
 #include <string.h>
-
-/* A stall must not become a leap. */
-#define STEP_MAX_NS (100 * GR_NS_PER_MS)
 
 void master_state_init(struct master_state *state, const struct layout *layout,
 		       const struct scene_file *scene)
@@ -15,6 +11,7 @@ void master_state_init(struct master_state *state, const struct layout *layout,
 	*state = (struct master_state){ .layout = layout, .scene = scene };
 	master_settings_init(&state->settings, scene, layout->eye_separation_m);
 	state->T_scene_room = scene->room;
+	hand_init(&state->hand, &layout->hand, scene);
 }
 
 void master_state_adopt(struct master_state *state, const struct param_state *params)
@@ -26,7 +23,7 @@ void master_state_adopt(struct master_state *state, const struct param_state *pa
 	if (gr_pose_valid(&room)) /* else it was never set */
 		state->T_scene_room = room;
 	master_settings_read(&state->settings, params);
-	state->buttons = *param_u32(params, PARAM_WAND_BUTTONS);
+	hand_adopt(&state->hand, params);
 	memcpy(&state->epoch, param_get(params, PARAM_GI_EPOCH), sizeof state->epoch);
 }
 
@@ -36,60 +33,6 @@ void master_state_start_input(const struct master_state *state, struct master_in
 		.head.T_room_body = state->layout->start_head,
 		.wand.T_room_body = state->layout->start_wand,
 	};
-}
-
-float master_fly_speed(float distance_m)
-{
-	float d = fminf(fmaxf(distance_m, 0.0f), 1.0f);
-
-	return 1.4f * powf(d / 0.4f, 2.5f);
-}
-
-static void fly(struct master_state *state, const struct master_input *input)
-{
-	const vec3 ahead = { 0, 0, -1 };
-	const float *head = input->head.T_room_body.p, *wand = input->wand.T_room_body.p;
-	int64_t step_ns = input->step_ns < STEP_MAX_NS ? input->step_ns : STEP_MAX_NS;
-	float way;
-	vec3 room, scene;
-
-	if (step_ns <= 0)
-		return;
-	way = master_fly_speed(hypotf(wand[0] - head[0], wand[2] - head[2])) *
-	      (float)((double)step_ns * 1e-9);
-	gr_pose_direction(&input->wand.T_room_body, ahead, room);
-	gr_pose_direction(&state->T_scene_room, room, scene);
-	for (int i = 0; i < 3; i++)
-		state->T_scene_room.p[i] += way * scene[i];
-}
-
-static uint32_t torches(const struct scene_file *scene)
-{
-	uint32_t bits = 0;
-
-	for (size_t i = 0; i < scene->lamp_count && i < PARAM_MAX_LAMPS; i++)
-		if (scene->lamps[i].mount == SCENE_MOUNT_WAND)
-			bits |= 1u << i;
-	return bits;
-}
-
-static void use_buttons(struct master_state *state, const struct master_input *input)
-{
-	uint32_t pressed = input->buttons & ~state->buttons;
-
-	state->buttons = input->buttons;
-	if (pressed & MASTER_BUTTON_TORCH) {
-		uint32_t held = torches(state->scene);
-		/* All on or all off, also when the control socket left them mixed. */
-		if (state->settings.lamp_on & held)
-			state->settings.lamp_on &= ~held;
-		else
-			state->settings.lamp_on |= held;
-	}
-	if (pressed & MASTER_BUTTON_RESET)
-		state->T_scene_room = state->scene->room;
-	else if (input->buttons & MASTER_BUTTON_FLY && input->wand.tracked)
-		fly(state, input);
 }
 
 /*
@@ -176,9 +119,20 @@ static void set_lamps(struct master_state *state, const struct master_input *inp
 	for (size_t i = 0; i < state->scene->lamp_count && i < PARAM_MAX_LAMPS; i++)
 		master_lamp_place(&state->scene->lamps[i], &T_scene_head, &T_scene_wand,
 				  input->time_ns, positions + 3 * i, directions + 3 * i);
+	if (state->hand.put_down) {
+		memcpy(positions + (ptrdiff_t)3 * state->hand.torch, state->hand.position, sizeof(vec3));
+		memcpy(directions + (ptrdiff_t)3 * state->hand.torch, state->hand.direction, sizeof(vec3));
+	}
 	set(setter, PARAM_LAMP_POSITION, positions);
 	set(setter, PARAM_LAMP_DIRECTION, directions);
 	set(setter, PARAM_LAMP_ON, &state->settings.lamp_on);
+}
+
+/* Whether the parameters took the room's place. */
+static bool room_kept(const struct param_state *params, const struct gr_pose *room)
+{
+	return memcmp(param_get(params, PARAM_ROOM_POSITION), room->p, sizeof room->p) == 0 &&
+	       memcmp(param_get(params, PARAM_ROOM_ROTATION), room->q, sizeof room->q) == 0;
 }
 
 int master_state_frame(struct master_state *state, const struct master_input *input,
@@ -191,12 +145,15 @@ int master_state_frame(struct master_state *state, const struct master_input *in
 			 (input->wand.tracked ? MASTER_TRACK_WAND : 0);
 	struct gr_pose before = state->T_scene_room;
 
-	use_buttons(state, input);
+	if (hand_step(&state->hand, input, &state->settings, &state->T_scene_room) < 0) {
+		*refused = "wand";
+		setter.result = GR_ERR_RANGE;
+	}
 	if (restart_light)
 		state->epoch = frame;
 	set(&setter, PARAM_FRAME_TIME, &time_ns);
 	set_pose(&setter, PARAM_ROOM_POSITION, PARAM_ROOM_ROTATION, &state->T_scene_room);
-	if (setter.result < 0)
+	if (!room_kept(params, &state->T_scene_room))
 		state->T_scene_room = before; /* flown out of the world: stays at its rim */
 	set_pose(&setter, PARAM_HEAD_POSITION, PARAM_HEAD_ROTATION, &input->head.T_room_body);
 	set_pose(&setter, PARAM_WAND_POSITION, PARAM_WAND_ROTATION, &input->wand.T_room_body);
@@ -205,6 +162,8 @@ int master_state_frame(struct master_state *state, const struct master_input *in
 	set(&setter, PARAM_GI_EPOCH, &state->epoch);
 	set_lamps(state, input, &setter);
 	if (master_settings_apply(&state->settings, params, frame, refused) < 0)
+		setter.result = GR_ERR_RANGE;
+	if (hand_write(&state->hand, input->step_ns, params, frame, refused) < 0)
 		setter.result = GR_ERR_RANGE;
 	return setter.result;
 }

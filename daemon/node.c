@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/result.h"
 #include "daemon/node_frame.h"
+#include "daemon/node_input.h"
 #include "daemon/node_vitals.h"
 #include "daemon/swap_wait.h"
 
@@ -202,6 +203,8 @@ static void serve_protocol(struct node *n)
 		swap_give_way();
 		fdp_node_swapped(n->fdp, n->report, n->swap_ns, gr_clock_now(&gr_clock_monotonic));
 		n->swap_ns = 0;
+		if (n->params.input)
+			node_input_tell(n->target, n->fdp);
 		notify_feed(&n->notify, gr_clock_now(&gr_clock_monotonic));
 	}
 	net_flush(n->net);
@@ -295,6 +298,10 @@ static void on_window(void *ctx, int64_t now_ns)
 
 	if (!target_poll(n->target))
 		window_closed(n);
+	if (n->params.input) {
+		node_input_tell(n->target, n->fdp);
+		loop_timer_set(n->loop, n->tick_timer, fdp_node_next(n->fdp));
+	}
 	loop_timer_set(n->loop, n->window_timer, now_ns + WINDOW_NS);
 }
 

@@ -37,6 +37,7 @@ struct node_params {
 	struct fdp_contents contents;
 	uint8_t key[FDP_KEY_BYTES];
 	bool window;    /* the target is a window, which must be answered */
+	bool input;     /* what is done there goes to the master */
 	bool once;      /* end when the master ends or refuses */
 	int swap_log;   /* a line of each swap is written there; -1: nowhere */
 	uint64_t every; /* save pictures of frames that this divides; 0: the last alone */

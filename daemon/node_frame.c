@@ -1,6 +1,7 @@
 #include "daemon/node_frame.h"
 
 #include "base/result.h"
+#include "daemon/master_state.h"
 
 #include <math.h>
 #include <string.h>
@@ -42,6 +43,26 @@ static bool get_lamps(struct render_frame *out, const struct scene_file *scene,
 	return true;
 }
 
+static bool get_hand(struct frame_hand *out, const struct scene_file *scene,
+		     const struct param_state *params)
+{
+	const uint32_t flags = *param_u32(params, PARAM_HAND_FLAGS), torch = *param_u32(params, PARAM_HAND_TORCH);
+
+	out->shown = flags & HAND_FLAG_HUD && *param_u32(params, PARAM_TRACK_FLAGS) & MASTER_TRACK_WAND;
+	if (!out->shown) /* where the wand is then is of no interest */
+		return true;
+	out->scale = *param_f32(params, PARAM_HUD_SCALE);
+	out->mode = (enum frame_hand_mode)*param_u32(params, PARAM_HAND_MODE);
+	out->quality = flags & HAND_FLAG_QUALITY;
+	out->torch_hue = *param_f32(params, PARAM_HAND_HUE);
+	out->torch = torch <= scene->lamp_count && torch <= PARAM_MAX_LAMPS ? (int)torch - 1 : -1;
+	return get_pose(params, PARAM_WAND_POSITION, PARAM_WAND_ROTATION, &out->T_room_wand);
+}
+
+_Static_assert((int)FRAME_HAND_MODES == (int)HAND_MODES &&
+		       (int)FRAME_HAND_SETTINGS == (int)HAND_SETTINGS,
+	       "the layouts go as they are");
+
 int node_frame_fill(struct render_frame *out, const struct scene_file *scene,
 		    const struct param_state *params, uint64_t frame, const char **refused)
 {
@@ -60,10 +81,16 @@ int node_frame_fill(struct render_frame *out, const struct scene_file *scene,
 		*refused = param_info(PARAM_LAMP_DIRECTION)->name;
 		return GR_ERR_RANGE;
 	}
+	if (!get_hand(&f.hand, scene, params)) {
+		*refused = param_info(PARAM_WAND_ROTATION)->name;
+		return GR_ERR_RANGE;
+	}
 	f.eye_separation_m = *param_f32(params, PARAM_EYE_SEPARATION);
 	f.gi_on = *param_u32(params, PARAM_GI_ON) != 0;
 	f.gi_epoch = *(const uint64_t *)param_get(params, PARAM_GI_EPOCH);
 	f.gi_steps = (int)*param_u32(params, PARAM_GI_STEPS);
+	f.gi_gathers = (int)*param_u32(params, PARAM_GI_GATHERS);
+	f.gi_refine = (int)*param_u32(params, PARAM_GI_REFINE);
 	f.gi_incremental = *param_f32(params, PARAM_GI_INCREMENTAL);
 	f.absorption_per_m = *param_f32(params, PARAM_ABSORPTION);
 	f.scattering_per_m = *param_f32(params, PARAM_SCATTERING);

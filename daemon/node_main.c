@@ -9,6 +9,7 @@
 #include "daemon/json.h"
 #include "daemon/node.h"
 #include "daemon/node_control.h"
+#include "daemon/node_input.h"
 #include "daemon/node_light.h"
 #include "daemon/options.h"
 #include "daemon/priority.h"
@@ -248,6 +249,7 @@ static int open_all(struct opened *o, const struct node_options *options)
 		.scene_file = o->files.scene_file,
 		.window = kind_of(&o->files.layout->nodes[o->index], options->target) !=
 			  TARGET_HEADLESS,
+		.input = node_input_wanted(o->files.layout),
 		.once = options->once,
 		.every = (uint64_t)options->every,
 	};

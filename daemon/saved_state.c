@@ -5,11 +5,12 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <sodium.h>
 #include <stdio.h>
 #include <string.h>
 
-#define VERSION 2
+#define VERSION 3
 #define SUM_BYTES 32
 #define SLACK_NS (60 * INT64_C(1000000000)) /* a clock that was set a little */
 
@@ -18,6 +19,18 @@ static const uint8_t magic[4] = { 'G', 'R', 'S', 'S' };
 static void sum(const uint8_t *bytes, uint8_t out[SUM_BYTES])
 {
 	crypto_generichash(out, SUM_BYTES, bytes, SAVED_STATE_BYTES - SUM_BYTES, NULL, 0);
+}
+
+static void write_hand(struct gr_writer *w, const struct saved_hand *hand)
+{
+	gr_write_u32(w, hand->buttons);
+	gr_write_u32(w, hand->mode);
+	gr_write_u32(w, hand->flags);
+	gr_write_f32(w, hand->hue);
+	for (int i = 0; i < 3; i++)
+		gr_write_f32(w, hand->position[i]);
+	for (int i = 0; i < 3; i++)
+		gr_write_f32(w, hand->direction[i]);
 }
 
 void saved_state_encode(const struct saved_state *state, uint8_t bytes[SAVED_STATE_BYTES])
@@ -41,14 +54,27 @@ void saved_state_encode(const struct saved_state *state, uint8_t bytes[SAVED_STA
 		gr_write_f32(&w, state->T_scene_room.q[i]);
 	gr_write_u32(&w, s->gi_on);
 	gr_write_u32(&w, s->gi_steps);
+	gr_write_u32(&w, s->gi_gathers);
 	gr_write_u32(&w, s->tone_curve);
 	for (size_t i = 0; i < sizeof reals / sizeof *reals; i++)
 		gr_write_f32(&w, reals[i]);
 	gr_write_u32(&w, s->lamp_on);
 	for (int i = 0; i < 3 * PARAM_MAX_LAMPS; i++)
 		gr_write_f32(&w, s->lamp_intensity[i]);
-	gr_write_u32(&w, state->buttons);
+	write_hand(&w, &state->hand);
 	sum(bytes, bytes + w.len);
+}
+
+static void read_hand(struct gr_reader *r, struct saved_hand *hand)
+{
+	hand->buttons = gr_read_u32(r);
+	hand->mode = gr_read_u32(r);
+	hand->flags = gr_read_u32(r);
+	hand->hue = gr_read_f32(r);
+	for (int i = 0; i < 3; i++)
+		hand->position[i] = gr_read_f32(r);
+	for (int i = 0; i < 3; i++)
+		hand->direction[i] = gr_read_f32(r);
 }
 
 static void read_all(struct gr_reader *r, struct saved_state *out)
@@ -69,13 +95,26 @@ static void read_all(struct gr_reader *r, struct saved_state *out)
 		out->T_scene_room.q[i] = gr_read_f32(r);
 	s->gi_on = gr_read_u32(r);
 	s->gi_steps = gr_read_u32(r);
+	s->gi_gathers = gr_read_u32(r);
 	s->tone_curve = gr_read_u32(r);
 	for (size_t i = 0; i < sizeof reals / sizeof *reals; i++)
 		*reals[i] = gr_read_f32(r);
 	s->lamp_on = gr_read_u32(r);
 	for (int i = 0; i < 3 * PARAM_MAX_LAMPS; i++)
 		s->lamp_intensity[i] = gr_read_f32(r);
-	out->buttons = gr_read_u32(r);
+	read_hand(r, &out->hand);
+}
+
+static bool hand_in_range(const struct saved_hand *hand, struct param_state *params)
+{
+	float place[3 * PARAM_MAX_LAMPS] = { 0 };
+
+	memcpy(place, hand->position, sizeof hand->position);
+	return hand->mode < HAND_MODES && !(hand->flags & ~(HAND_FLAG_QUALITY | HAND_FLAG_PUT_DOWN)) &&
+	       param_set(params, PARAM_HAND_HUE, &hand->hue, 1) >= 0 &&
+	       param_set(params, PARAM_LAMP_POSITION, place, 1) >= 0 &&
+	       (!(hand->flags & HAND_FLAG_PUT_DOWN) ||
+		fabsf(glm_vec3_norm2((float *)hand->direction) - 1) < 1e-2f);
 }
 
 /* Whatever it says must be what a frame's parameters may be. */
@@ -100,6 +139,10 @@ static bool in_range(const struct saved_state *s, const char **refused)
 		ok = master_settings_apply(&s->settings, params, 1, refused) >= 0;
 	if (ok && param_set(params, PARAM_LAMP_ON, &s->settings.lamp_on, 1) < 0) {
 		*refused = "lamp_on";
+		ok = false;
+	}
+	if (ok && !hand_in_range(&s->hand, params)) {
+		*refused = "hand";
 		ok = false;
 	}
 	param_state_destroy(&params);
@@ -183,14 +226,31 @@ int saved_state_load(const char *path, struct saved_state *out, char why[SAVED_S
 
 void saved_state_take(struct saved_state *out, const struct master_state *state)
 {
+	const struct hand *hand = &state->hand;
+
 	out->T_scene_room = state->T_scene_room;
 	out->settings = state->settings;
-	out->buttons = state->buttons;
+	out->hand = (struct saved_hand){
+		.buttons = hand->buttons,
+		.mode = hand->mode,
+		.flags = (hand->quality ? HAND_FLAG_QUALITY : 0) | (hand->put_down ? HAND_FLAG_PUT_DOWN : 0),
+		.hue = hand->hue,
+	};
+	memcpy(out->hand.position, hand->position, sizeof hand->position);
+	memcpy(out->hand.direction, hand->direction, sizeof hand->direction);
 }
 
 void saved_state_give(const struct saved_state *saved, struct master_state *state)
 {
+	struct hand *hand = &state->hand;
+
 	state->T_scene_room = saved->T_scene_room;
 	state->settings = saved->settings;
-	state->buttons = saved->buttons;
+	hand->buttons = saved->hand.buttons;
+	hand->mode = (enum hand_mode)saved->hand.mode;
+	hand->quality = saved->hand.flags & HAND_FLAG_QUALITY;
+	hand->put_down = saved->hand.flags & HAND_FLAG_PUT_DOWN && hand->torch >= 0;
+	hand->hue = saved->hand.hue;
+	memcpy(hand->position, saved->hand.position, sizeof hand->position);
+	memcpy(hand->direction, saved->hand.direction, sizeof hand->direction);
 }

@@ -1,13 +1,15 @@
 /*
  * What a master leaves behind for its successor, so that a room whose master
  * died goes on where it was: scene time, where the room stands, lamps and other
- * settings, the wand's buttons. A small file with a checksum. Encoding and
+ * settings, what the hand does. A small file with a checksum. Encoding and
  * decoding are pure; state_keeper.h writes it.
  *
  * The file: "GRSS", u32 version, layout hash (32), scene hash (32), i64 when it
  * was saved (CLOCK_REALTIME, ns), u64 frame, i64 scene time in ns, position and
  * rotation of the room (7 f32), the settings in the order of struct
- * master_settings, buttons (u32), BLAKE2b-256 of all before. Little endian.
+ * master_settings, of the hand buttons, layout and flags (u32 each), hue, and
+ * position and direction of the torch (7 f32), BLAKE2b-256 of all before. Little
+ * endian.
  */
 #ifndef GROTTO_DAEMON_SAVED_STATE_H
 #define GROTTO_DAEMON_SAVED_STATE_H
@@ -16,7 +18,7 @@
 
 /* Older than this, the file is of another visit. */
 #define SAVED_STATE_AGE_MOST_NS (600 * INT64_C(1000000000))
-#define SAVED_STATE_BYTES 404
+#define SAVED_STATE_BYTES 444
 #define SAVED_STATE_REASON 200
 
 struct saved_state {
@@ -26,7 +28,12 @@ struct saved_state {
 	int64_t time_ns; /* scene time of that frame */
 	struct gr_pose T_scene_room;
 	struct master_settings settings;
-	uint32_t buttons;
+	struct saved_hand {
+		uint32_t buttons, mode;
+		uint32_t flags; /* HAND_FLAG_QUALITY, HAND_FLAG_PUT_DOWN */
+		float hue;
+		vec3 position, direction; /* with HAND_FLAG_PUT_DOWN */
+	} hand;
 };
 
 void saved_state_encode(const struct saved_state *state, uint8_t bytes[SAVED_STATE_BYTES]);

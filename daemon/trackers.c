@@ -65,6 +65,8 @@ static int open_one(struct tracker *out, const struct layout *layout,
 	switch (tracker->kind) {
 	case LAYOUT_TRACKER_SIM: return open_sim(&out->source, layout, tracker, diag);
 	case LAYOUT_TRACKER_REPLAY: return open_replay(&out->source, layout, tracker, diag);
+	case LAYOUT_TRACKER_WINDOW:
+		return track_window_create(&out->source, &layout->start_head, &layout->start_wand);
 	default: return open_device(out, layout, tracker, diag);
 	}
 }
@@ -214,8 +216,17 @@ void trackers_poll(struct trackers *trackers, int64_t now_ns, int64_t monotonic_
 	}
 }
 
+void trackers_window_input(struct trackers *trackers, unsigned node,
+			   const struct track_window_input *input, int64_t now_ns)
+{
+	for (size_t i = 0; i < trackers->count; i++)
+		if (trackers->all[i].of->kind == LAYOUT_TRACKER_WINDOW)
+			track_window_feed(trackers->all[i].source, node, input, now_ns);
+}
+
+/* input: of the wand; a wand that is lost holds no button down. */
 static void sample_body(const struct trackers *trackers, enum track_body body, int64_t photon_ns,
-			struct master_body *out, uint32_t *buttons)
+			struct master_body *out, struct master_input *input)
 {
 	struct track_sample sample;
 	bool tracked = false;
@@ -227,13 +238,17 @@ static void sample_body(const struct trackers *trackers, enum track_body body, i
 	}
 	out->T_room_body = sample.T_room_body;
 	out->tracked = tracked;
-	/* A wand that is lost holds no button down. */
-	if (buttons)
-		*buttons = tracked ? sample.buttons : 0;
+	if (!input || !tracked)
+		return;
+	input->buttons = sample.buttons;
+	for (uint32_t i = 0; i < sample.axis_count && i < TRACK_AXES; i++)
+		input->axes[i] = sample.axes[i];
 }
 
 void trackers_sample(const struct trackers *trackers, int64_t photon_ns, struct master_input *input)
 {
+	input->buttons = 0;
+	memset(input->axes, 0, sizeof input->axes);
 	sample_body(trackers, TRACK_HEAD, photon_ns, &input->head, NULL);
-	sample_body(trackers, TRACK_WAND, photon_ns, &input->wand, &input->buttons);
+	sample_body(trackers, TRACK_WAND, photon_ns, &input->wand, input);
 }

@@ -15,6 +15,7 @@
 #include "tracking/bind.h"
 #include "tracking/device.h"
 #include "tracking/source.h"
+#include "tracking/window.h"
 
 #define TRACKERS_MAX 8
 #define TRACKERS_STALE_NS (500 * INT64_C(1000000)) /* older than this: not tracked */
@@ -70,7 +71,10 @@ void trackers_close(struct trackers *trackers);
  * CLOCK_MONOTONIC. Never blocks.
  */
 void trackers_poll(struct trackers *trackers, int64_t now_ns, int64_t monotonic_ns);
-/* Head, wand and buttons at photon_ns into `input`; a body never seen keeps its pose there. */
+/* What is done at a node's window, for the layout's tracker of that kind; without one nothing. */
+void trackers_window_input(struct trackers *trackers, unsigned node,
+			   const struct track_window_input *input, int64_t now_ns);
+/* Head, wand, its buttons and axes at photon_ns into `input`; a body never seen keeps its pose there. */
 void trackers_sample(const struct trackers *trackers, int64_t photon_ns,
 		     struct master_input *input);
 /*

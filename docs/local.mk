@@ -3,7 +3,7 @@ dist_doc_DATA += docs/layout.md docs/scene.md
 dist_doc_DATA += README.md CHANGELOG.md LICENSE docs/architecture.md docs/operating.md docs/tracking.md docs/trackers.md
 include $(top_srcdir)/docs/man/local.mk
 dist_doc_DATA += docs/protocol.md
-dist_doc_DATA += docs/control.md docs/doctor.md docs/recording.md
+dist_doc_DATA += docs/control.md docs/doctor.md docs/interaction.md docs/recording.md
 dist_doc_DATA += docs/models.md
 dist_doc_DATA += docs/light.md
 dist_doc_DATA += docs/surfels.md

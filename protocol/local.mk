@@ -5,8 +5,8 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/clock_offset.c protocol/clock_offset.h \
 	protocol/delta.c \
 	protocol/fragment.c protocol/fragment.h \
-	protocol/joints.c protocol/joints.h \
 	protocol/input.c protocol/input.h \
+	protocol/joints.c protocol/joints.h \
 	protocol/key.c protocol/key.h \
 	protocol/loss.h \
 	protocol/master.c protocol/master.h protocol/master_private.h \

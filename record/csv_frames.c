@@ -12,7 +12,7 @@ void csv_frames_head(FILE *file)
 	fputs("frame,begun_s,applied_s,ready_s,swap_sent_s,swap_at_s,nodes,nodes_ready,nodes_swapped,"
 	      "skew_us,skew_raw_us,hash,whole,scene_s,tracked,head_x_m,head_y_m,head_z_m,head_qx,head_qy,head_qz,"
 	      "head_qw,wand_x_m,wand_y_m,wand_z_m,wand_qx,wand_qy,wand_qz,wand_qw,wand_buttons,"
-	      "room_x_m,room_y_m,room_z_m,room_qx,room_qy,room_qz,room_qw\n", file);
+	      "room_x_m,room_y_m,room_z_m,room_qx,room_qy,room_qz,room_qw,hand_layout\n", file);
 }
 
 static void write_time(const struct csv_frames *c, int64_t ns)
@@ -51,7 +51,7 @@ static void write_row(const struct csv_frames *c, const struct csv_frame *f)
 	write_spread(file, &f->raw);
 	fprintf(file, ",%016" PRIx64 ",%d,", f->hash, f->whole);
 	if (!f->held) {
-		fputs(",,,,,,,,,,,,,,,,,,,,,,,\n", file);
+		fputs(",,,,,,,,,,,,,,,,,,,,,,,,\n", file);
 		return;
 	}
 	csv_seconds(file, (int64_t)f->scene_ns);
@@ -60,7 +60,7 @@ static void write_row(const struct csv_frames *c, const struct csv_frame *f)
 	write_pose(file, &f->wand);
 	fprintf(file, ",%" PRIu32, f->buttons);
 	write_pose(file, &f->room);
-	fputc('\n', file);
+	fprintf(file, ",%" PRIu32 "\n", f->hand_layout);
 }
 
 /* Writes the open frames up to `last`, in their order. */
@@ -121,6 +121,7 @@ static void begin(struct csv_frames *c, const struct record_entry *entry)
 	copy_pose(state, PARAM_ROOM_POSITION, PARAM_ROOM_ROTATION, &f->room);
 	f->buttons = *param_u32(state, PARAM_WAND_BUTTONS);
 	f->flags = *param_u32(state, PARAM_TRACK_FLAGS);
+	f->hand_layout = *param_u32(state, PARAM_HAND_MODE);
 }
 
 static void widen(struct csv_spread *s, unsigned node, int64_t ns)

@@ -24,7 +24,7 @@ struct csv_frame {
 	bool whole, held; /* held: the rest is known */
 	uint64_t scene_ns;
 	struct csv_pose head, wand, room;
-	uint32_t buttons, flags;
+	uint32_t buttons, flags, hand_layout;
 };
 
 struct csv_frames {

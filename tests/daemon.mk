@@ -60,6 +60,12 @@ tests_unit_test_saved_state_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
 tests_unit_test_saved_state_LDADD = daemon/libgdaemon.a renderer/libgrenderer.a $(PROTOCOL_LIBS) $(CONFIG_LIBS) \
 	$(CMOCKA_LIBS) -lpthread
 
+check_PROGRAMS += tests/unit/test_hand
+TESTS += tests/unit/test_hand
+tests_unit_test_hand_SOURCES = tests/unit/test_hand.c tests/unit/unit.h
+tests_unit_test_hand_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_hand_LDADD = $(tests_unit_test_master_state_LDADD)
+
 check_PROGRAMS += tests/unit/test_master_state
 TESTS += tests/unit/test_master_state
 tests_unit_test_master_state_SOURCES = tests/unit/test_master_state.c tests/unit/unit.h
@@ -78,6 +84,17 @@ check_PROGRAMS += tests/loopback/costs
 tests_loopback_costs_SOURCES = tests/loopback/costs.c
 tests_loopback_costs_CFLAGS = $(AM_CFLAGS) $(SODIUM_CFLAGS)
 tests_loopback_costs_LDADD = $(RENDERER_LIBS)
+if HAVE_X11
+check_PROGRAMS += tests/loopback/type
+tests_loopback_type_SOURCES = tests/loopback/type.c
+tests_loopback_type_CFLAGS = $(AM_CFLAGS) $(X11_CFLAGS)
+tests_loopback_type_LDADD = $(X11_LIBS)
+else
+EXTRA_DIST += tests/loopback/type.c
+endif
+dist_check_SCRIPTS += tests/loopback/hand.sh tests/loopback/window_input.sh
+TESTS += tests/loopback/hand.sh tests/loopback/window_input.sh
+
 dist_check_SCRIPTS += tests/loopback/plan.sh
 TESTS += tests/loopback/plan.sh
 

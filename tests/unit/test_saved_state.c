@@ -16,11 +16,12 @@ static struct saved_state sample(void)
 		.layout_hash = { 1, 2 }, .scene_hash = { 3, 4 }, .saved_ns = 1000 * GR_NS_PER_S,
 		.frame = 77, .time_ns = 1234567890,
 		.T_scene_room = { .p = { 1, -2, 3 }, .q = { 0, 0.6f, 0, 0.8f } },
-		.settings = { .gi_on = 1, .gi_steps = 9, .tone_curve = 1, .gi_incremental = 0.5f,
+		.settings = { .gi_on = 1, .gi_steps = 9, .gi_gathers = 2, .tone_curve = 1, .gi_incremental = 0.5f,
 			      .absorption = 0.1f, .scattering = 0.2f, .exposure = 2, .gamma_encode = 0.5f,
 			      .eye_separation = 0.06f, .adaptation = 50, .luminance_max = 1e4f,
 			      .tone_bias = 0.8f, .lamp_on = 5 },
-		.buttons = 3,
+		.hand = { .buttons = 3, .mode = HAND_LIGHTING, .flags = HAND_FLAG_QUALITY | HAND_FLAG_PUT_DOWN,
+			  .hue = 0.4f, .position = { 1, 2, 3 }, .direction = { 0, -1, 0 } },
 	};
 
 	for (int i = 0; i < 3 * PARAM_MAX_LAMPS; i++)
@@ -44,7 +45,7 @@ static void round_trip(void **state)
 	const struct saved_state s = sample();
 	uint8_t bytes[SAVED_STATE_BYTES], again[SAVED_STATE_BYTES];
 	struct saved_state out;
-	struct master_state master = { .buttons = 0 };
+	struct master_state master = { .hand.torch = 1 };
 
 	(void)state;
 	saved_state_encode(&s, bytes);
@@ -57,10 +58,15 @@ static void round_trip(void **state)
 	saved_state_encode(&out, again);
 	assert_memory_equal(bytes, again, sizeof bytes);
 	saved_state_give(&out, &master);
-	assert_int_equal(master.buttons, 3); /* a button that is held is not pressed anew */
+	assert_int_equal(master.hand.buttons, 3); /* a button that is held is not pressed anew */
 	memset(&out, 0, sizeof out);
 	saved_state_take(&out, &master);
 	assert_memory_equal(&out.settings, &s.settings, sizeof s.settings);
+	assert_memory_equal(&out.hand, &s.hand, sizeof s.hand);
+	/* Another scene's file cannot be taken; one without a torch puts none down. */
+	master.hand.torch = -1;
+	saved_state_give(&s, &master);
+	assert_false(master.hand.put_down);
 }
 
 /* Every length and every bit. */
@@ -101,6 +107,12 @@ static void out_of_range(void **state)
 	REFUSED(s.settings.tone_bias = 1);
 	REFUSED(s.settings.lamp_on = 1u << 20);
 	REFUSED(s.settings.lamp_intensity[47] = INFINITY);
+	REFUSED(s.settings.gi_gathers = 0);
+	REFUSED(s.hand.mode = HAND_MODES);
+	REFUSED(s.hand.flags = 8);
+	REFUSED(s.hand.hue = NAN);
+	REFUSED(s.hand.position[1] = 1e7f);
+	REFUSED(s.hand.direction[1] = 0);
 #undef REFUSED
 }
 
