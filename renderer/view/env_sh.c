@@ -155,6 +155,20 @@ static void multiply(const double a[9], const double b[9], double out[9])
 			 a[i / 3 * 3 + 2] * b[6 + i % 3];
 }
 
+static void bind(const struct env_sh *e)
+{
+	for (unsigned i = 0; i < BUFFERS; i++)
+		glBindBufferBase(GL_SHADER_STORAGE_BUFFER, FIRST_BINDING + i, e->buffers[i]);
+}
+
+/* The last pass, from what the others have left. */
+static void turn(const struct env_sh *e)
+{
+	glUseProgram(e->turn);
+	glDispatchCompute(1, 1, 1);
+	glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
 void env_sh_turn(struct env_sh *env_sh, const double rotation[9])
 {
 	const double c = cos(env_sh->heading), s = sin(env_sh->heading);
@@ -172,14 +186,15 @@ void env_sh_turn(struct env_sh *env_sh, const double rotation[9])
 	for (int i = 0; i < SH_ROTATION_MAX; i++)
 		values[i] = (float)matrix[i];
 	glNamedBufferSubData(env_sh->buffers[TURN], 0, sizeof values, values);
+	bind(env_sh);
+	turn(env_sh);
 }
 
 void env_sh_project(struct env_sh *env_sh, unsigned texture)
 {
 	const struct env_sh *e = env_sh;
 
-	for (unsigned i = 0; i < BUFFERS; i++)
-		glBindBufferBase(GL_SHADER_STORAGE_BUFFER, FIRST_BINDING + i, e->buffers[i]);
+	bind(e);
 	glBindTextureUnit(0, texture);
 	glUseProgram(e->rows);
 	glDispatchCompute(1, (unsigned)(e->height + ROW_GROUP - 1) / ROW_GROUP, 1);
@@ -188,9 +203,7 @@ void env_sh_project(struct env_sh *env_sh, unsigned texture)
 	glUniform1i(0, e->height);
 	glDispatchCompute((unsigned)(e->order * e->order), 1, 1);
 	glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-	glUseProgram(e->turn);
-	glDispatchCompute(1, 1, 1);
-	glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+	turn(e);
 }
 
 unsigned env_sh_buffer(const struct env_sh *env_sh)

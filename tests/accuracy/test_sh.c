@@ -6,6 +6,7 @@
 #include "base/result.h"
 #include "renderer/image/image.h"
 #include "renderer/scene/sh.h"
+#include "renderer/scene/sky.h"
 #include "renderer/view/env_sh.h"
 #include "tests/unit/gl.h"
 #include "tests/unit/shared.h"
@@ -272,6 +273,36 @@ static void environments(void **state)
 	unload(&other);
 }
 
+/* How many pixels a sky needs. */
+static void small_skies(void **state)
+{
+	static const double to_sun[3] = { 0.8, 0.6, 0 };
+	double fine[25][3], coarse[25][3];
+	struct image picture;
+	struct sky sky;
+
+	(void)state;
+	sky_init(&sky, 2.5, to_sun);
+	for (int width = 1024; width >= 32; width /= width > 256 ? 8 : 2) {
+		double worst = 0;
+
+		assert_int_equal(sky_picture(&sky, width, width / 2, &picture), GR_OK);
+		sh_project(&(struct environment_pixels){ .rgb = picture.data, .width = width,
+							 .height = width / 2, .upper_only = true },
+			   5, width == 1024 ? fine : coarse);
+		image_finish(&picture);
+		if (width == 1024)
+			continue;
+		for (int i = 0; i < 25; i++)
+			for (int k = 0; k < 3; k++)
+				worst = fmax(worst, fabs(coarse[i][k] - fine[i][k]) / fine[0][k]);
+		printf("# a sky of %d x %d pixels, order 5: a coefficient off by %.2f %% of the first\n", width,
+		       width / 2, 100 * worst);
+		if (width == 128)
+			assert_true(worst < 6e-4);
+	}
+}
+
 /* All in one pixel: the coefficients are the basis there; the reconstruction goes below 0. */
 static void one_bright_pixel(void **state)
 {
@@ -322,9 +353,12 @@ static double gpu_against_cpu(const struct environment_pixels *pixels, int order
 	struct env_sh *gpu;
 
 	assert_int_equal(env_sh_create(&gpu, pixels, order), GR_OK);
-	if (rotation)
+	/* before the picture, or after it */
+	if (rotation && order > 5)
 		env_sh_turn(gpu, rotation);
 	env_sh_project(gpu, texture);
+	if (rotation)
+		env_sh_turn(gpu, rotation);
 	env_sh_read(gpu, got);
 	sh_project(pixels, order, want);
 	if (rotation)
@@ -384,19 +418,18 @@ static void odd_pictures(void **state)
 	assert_true(worst < 1e-5);
 }
 
-/* A figure of speed, and no test of it: of all cores together, which others may want, too. */
-static void speed(void **state)
+/* Milliseconds of all cores together, which others may want, too: a figure, and no test of it. */
+static double cost(int width, int order)
 {
-	struct environment_pixels pixels = { .width = 1024, .height = 512 };
-	float *rgb = calloc(3 * 1024 * 512, sizeof *rgb);
+	struct environment_pixels pixels = { .width = width, .height = width / 2 };
+	float *rgb = calloc(3 * (size_t)(width * width / 2), sizeof *rgb);
 	struct timespec from, to;
 	struct env_sh *gpu;
 	unsigned texture;
 
-	(void)state;
 	pixels.rgb = rgb;
 	texture = texture_of(&pixels);
-	assert_int_equal(env_sh_create(&gpu, &pixels, 5), GR_OK);
+	assert_int_equal(env_sh_create(&gpu, &pixels, order), GR_OK);
 	for (int i = 0; i < 12; i++) {
 		if (i == 2) {
 			glFinish();
@@ -406,11 +439,17 @@ static void speed(void **state)
 	}
 	glFinish();
 	clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &to);
-	printf("# 1024 x 512 pixels, order 5: %.2f ms of processor time where that is the GPU\n",
-	       ((double)(to.tv_sec - from.tv_sec) * 1e3 + (double)(to.tv_nsec - from.tv_nsec) / 1e6) / 10);
 	env_sh_destroy(&gpu);
 	glDeleteTextures(1, &texture);
 	free(rgb);
+	return ((double)(to.tv_sec - from.tv_sec) * 1e3 + (double)(to.tv_nsec - from.tv_nsec) / 1e6) / 10;
+}
+
+static void speed(void **state)
+{
+	(void)state;
+	printf("# order 5, processor time where that is the GPU: 1024 x 512 %.2f ms, 512 x 256 %.2f ms, "
+	       "128 x 64 %.2f ms\n", cost(1024, 5), cost(512, 5), cost(128, 5));
 }
 
 int main(void)
@@ -423,6 +462,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(basis),	cmocka_unit_test(turns),     cmocka_unit_test(probes),
 		cmocka_unit_test(published),    cmocka_unit_test(environments), cmocka_unit_test(one_bright_pixel),
+		cmocka_unit_test(small_skies),
 	};
 
 	failed = cmocka_run_group_tests(tests, NULL, NULL);
