@@ -142,9 +142,10 @@ static int take_sensor(struct calibrate_reader *r, struct json_object *root,
 	sensor = json_object_is_type(sensors, json_type_array) ?
 			 json_object_array_get_idx(sensors, c->binding_index) :
 			 NULL;
-	if (!sensor || strcmp(report_text(sensor, "body"), calibrate_body(c)) != 0) {
-		fprintf(stderr, "grotto trackers: the master at %s has no tracker \"%s\" with such a %s; does it "
-				"run with this layout?\n",
+	if (!sensor || strcmp(report_text(sensor, "body"), calibrate_body(c)) != 0 ||
+	    (c->binding->sensor[0] && strcmp(report_text(sensor, "sensor"), c->binding->sensor) != 0)) {
+		fprintf(stderr, "grotto trackers: the master at %s has no tracker \"%s\" whose %s is on that sensor; "
+				"does it run with this layout?\n",
 			r->socket, c->tracker->name, calibrate_body(c));
 		return GR_ERR_MISMATCH;
 	}

@@ -32,7 +32,8 @@ struct controller {
 
 static inline void send_frame(struct controller *c, unsigned number)
 {
-	const double phase = number * 0.05;
+	/* By the clock: a machine that is slow sends less, and moves as fast. */
+	const double phase = (double)(gr_clock_now(&gr_clock_monotonic) % (1000 * GR_NS_PER_S)) * 1e-9 * 12.5;
 	struct rotation turn = c->turn;
 	double at[3], to[3];
 	struct dmat3 R;

@@ -435,14 +435,14 @@ static void put_wand_sensor(struct fixture *f, const double at[3])
 static void by_a_running_master(void **state)
 {
 	struct fixture *f = *state;
-	const char *const points[] = { "--points", f->points, "--keep", f->kept, "--seconds", "0.4", NULL };
-	const char *const rest[] = { "--points", f->kept, "--seconds", "0.4", NULL };
+	const char *const points[] = { "--points", f->points, "--keep", f->kept, "--seconds", "0.6", NULL };
+	const char *const rest[] = { "--points", f->kept, "--seconds", "0.6", NULL };
 	struct sockaddr_un at = { .sun_family = AF_UNIX };
 	struct layout *layout = load(f), *after;
 	struct gr_diag diag = { 0 };
 	struct master m = { 0 };
 	double turn_rad, place_m;
-	char *text;
+	char *text, *other;
 
 	snprintf(at.sun_path, sizeof at.sun_path, "%s", f->socket);
 	m.listener = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -472,7 +472,18 @@ static void by_a_running_master(void **state)
 	printf("# by a master: base %.2f mm and %.3f degrees off\n", place_m * 1e3, turn_rad * 180 / M_PI);
 	assert_true(place_m < 0.005 && turn_rad < 0.002);
 
+	/* Of a layout that the master does not run with nothing is taken. */
+	text = read_file(f->layout);
+	other = unit_replace(text, "flystick0", "flystick1");
+	write_file(f->layout, other);
+	start(f, points);
+	ends_with(f, 1);
+	says(f, "has no tracker \"art\" whose wand is on that sensor");
+	free(other);
+	free(text);
+
 	/* The one that was skipped is asked for; whoever changes the layout meanwhile keeps what he wrote. */
+	write_layout(f);
 	start(f, rest);
 	wait_for(f, "3 of 6: c");
 	write_file(f->layout, "# mine\n");
@@ -490,6 +501,39 @@ static void by_a_running_master(void **state)
 	layout_destroy(&layout);
 	layout_destroy(&after);
 	gr_diag_finish(&diag);
+}
+
+/* ---- of what was kept ---- */
+
+static void recorded(struct fixture *f, const char *points, const char *option, const char *wanted)
+{
+	const char *const options[] = { "--points", f->kept, option, NULL };
+	char *text;
+
+	write_layout(f);
+	write_file(f->kept, points);
+	start(f, options);
+	ends_with(f, 0);
+	text = read_file(f->layout);
+	if (!strstr(text, wanted))
+		fail_msg("wanted \"%s\" of\n%s", wanted, text);
+	layout_destroy(&(struct layout *){ load(f) });
+	free(text);
+}
+
+static void arms_and_scales(void **state)
+{
+	struct fixture *f = *state;
+
+	/* The base is where it is without one: in the room's middle; of three arms one is another. */
+	recorded(f, "a 0 0 0  0 0.1 0  0 0 0 1\nb 1 1 1  1 0.9 1  0 0 1 0\nc 2 0 0  2 0.1 0.2  0 0 0 1\n", "--arm",
+		 "; without c */ offset = [0.00000, -0.10000, 0.00000];");
+	/* In a device's metres that are half as long, turned to the left. */
+	recorded(f, "a 0 0 0  0 0 0  0 0 0 1\nb 1 0 0  0 0 2  0 0 0 1\nc 0 1 0  0 2 0  0 0 0 1\n"
+		    "d 0 0 -1  2 0 0  0 0 0 1\ne 1 1 1  -2 2 2  0 0 0 1\n",
+		 "--scale",
+		 "position = [0.00000, 0.00000, 0.00000]; heading_deg = 90.0000; pitch_deg = 0.0000; roll_deg = 0.0000; "
+		 "scale = 0.5; };");
 }
 
 /* ---- what is refused ---- */
@@ -539,6 +583,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		WITH(arm_base_and_where_the_wand_is),
 		WITH(by_a_running_master),
+		WITH(arms_and_scales),
 		WITH(what_is_refused),
 	};
 
