@@ -170,6 +170,7 @@ static void enter_session(struct fdp_node *n, const struct fdp_header *h, const 
 	n->heard_ns = now_ns;
 	n->group_heard_ns = 0;
 	n->out.hears_group = false;
+	n->input.times = FDP_INPUT_TIMES; /* a new master has heard of no window */
 	fdp_node_frame_reset(n);
 }
 

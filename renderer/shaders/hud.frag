@@ -20,5 +20,5 @@ void main()
 	bool hidden = scene.a >= 0.0 && distance(scene.xyz, eye_scene) + SLACK < length(to_eye);
 	float facing = abs(dot(normalize(normal), normalize(to_eye)));
 
-	out_colour = vec4(colour.rgb * (0.4 + 0.6 * facing), colour.a * (hidden ? FAINT : 1.0));
+	out_colour = vec4(colour.rgb * (0.55 + 0.45 * facing), colour.a * (hidden ? FAINT : 1.0));
 }

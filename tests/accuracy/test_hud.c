@@ -196,48 +196,48 @@ static void joins_across_walls(void **state)
 {
 	static const float heads[3][3] = { { 0, 1.7f, 0 }, { 0.1f, 1.5f, 0.2f }, { -0.2f, 1.8f, 0.1f } };
 	static const float aside[FRAME_HAND_MODES] = { 0.1f, -0.125f, -0.125f };
-	int differ = 0, shown = 0, in_front = 0, in_left = 0;
-	uint8_t seam[2 * PIXELS][3];
+	static uint8_t seams[FRAME_HAND_MODES * 3][2 * PIXELS][3];
+	int differ = 0, shown = 0, pixels[2] = { 0, 0 };
 
-	for (int mode = 0; mode < FRAME_HAND_MODES; mode++)
-		for (int h = 0; h < 3; h++)
-			for (int w = 0; w < 2; w++) {
-				struct setup s;
-				char name[64];
+	for (int w = 0; w < 2; w++) {
+		struct setup s;
 
-				start(&s, *state, w ? &left : &front, RENDERER_SIDE_BY_SIDE, -4);
-				s.frame.exposure = 1e-9f; /* the room is black: what is seen is the HUD */
-				s.frame.hand.mode = (enum frame_hand_mode)mode;
-				s.frame.hand.scale = SCALE;
-				/* Along the wand's right hand, so that symbols, or bars, lie across the edge. */
-				s.frame.hand.T_room_wand.p[0] += aside[mode] * SCALE * (float)M_SQRT1_2;
-				s.frame.hand.T_room_wand.p[2] -= aside[mode] * SCALE * (float)M_SQRT1_2;
-				memcpy(s.frame.T_room_head.p, heads[h], sizeof heads[h]);
-				draw(&s);
-				snprintf(name, sizeof name, "hud-%d-%d-%s", mode, h, w ? "left" : "front");
-				keep(&s, name);
-				for (int eye = 0; eye < 2; eye++)
-					for (int y = 0; y < PIXELS; y++) {
-						const uint8_t *p = at(&s, eye * PIXELS + (w ? PIXELS - 1 : 0), y);
-						uint8_t *other = seam[eye * PIXELS + y];
+		start(&s, *state, w ? &left : &front, RENDERER_SIDE_BY_SIDE, -4);
+		s.frame.exposure = 1e-9f; /* the room is black: what is seen is the HUD */
+		s.frame.hand.scale = SCALE;
+		for (int k = 0; k < FRAME_HAND_MODES * 3; k++) {
+			const float by = aside[k / 3] * SCALE * (float)M_SQRT1_2;
+			char name[64];
 
-						if (!w) {
-							memcpy(other, p, 3);
-							continue;
-						}
-						if (bright(p) || bright(other)) {
-							shown++;
-							differ += abs(p[0] - other[0]) > 3 || abs(p[1] - other[1]) > 3 ||
-								  abs(p[2] - other[2]) > 3;
-						}
-					}
-				for (int i = 0; i < s.width * s.height; i++)
-					*(w ? &in_left : &in_front) += bright(s.rgb + (ptrdiff_t)3 * i);
-				stop(&s);
+			s.frame.hand.mode = (enum frame_hand_mode)(k / 3);
+			/* Along the wand's right hand, so that symbols, or bars, lie across the edge. */
+			s.frame.hand.T_room_wand.p[0] = -0.45f + by;
+			s.frame.hand.T_room_wand.p[2] = -0.45f - by;
+			memcpy(s.frame.T_room_head.p, heads[k % 3], sizeof heads[0]);
+			draw(&s);
+			snprintf(name, sizeof name, "hud-%d-%d-%s", k / 3, k % 3, w ? "left" : "front");
+			keep(&s, name);
+			for (int y = 0; y < 2 * PIXELS; y++) { /* one eye's, then the other's */
+				const int x = y / PIXELS * PIXELS + (w ? PIXELS - 1 : 0);
+				const uint8_t *p = at(&s, x, y % PIXELS);
+				uint8_t *other = seams[k][y];
+
+				if (!w) {
+					memcpy(other, p, 3);
+				} else if (bright(p) || bright(other)) {
+					shown++;
+					differ += abs(p[0] - other[0]) > 3 || abs(p[1] - other[1]) > 3 ||
+						  abs(p[2] - other[2]) > 3;
+				}
 			}
+			for (int i = 0; i < s.width * s.height; i++)
+				pixels[w] += bright(s.rgb + (ptrdiff_t)3 * i);
+		}
+		stop(&s);
+	}
 	printf("# %d pixels on the edge show the HUD in one picture or the other, %d differ; %d and %d pixels in all\n",
-	       shown, differ, in_front, in_left);
-	assert_true(in_front > 2000 && in_left > 2000); /* it spans both */
+	       shown, differ, pixels[0], pixels[1]);
+	assert_true(pixels[0] > 2000 && pixels[1] > 2000); /* it spans both */
 	assert_true(shown > 40);
 	assert_true(differ * 50 <= shown);
 }
@@ -366,49 +366,56 @@ static void leaves_no_trace(void **state)
 	stop(&s);
 }
 
-/* The brightest pixel within the HUD's mark. */
-static int mark_of(struct setup *s)
+/* The brightest pixel within the HUD's mark; *rim: the darkest near it. */
+static int mark_of(struct setup *s, int *rim)
 {
 	struct hud_part parts[HUD_PARTS_MOST];
 	struct hud_view v = view_of(s->frame.hand.mode);
 	double want[2];
 	int most = 0;
 
+	*rim = 255;
 	draw(s);
 	v.T_room_wand = s->frame.hand.T_room_wand;
 	v.scale = s->frame.hand.scale;
 	hud_parts(&v, parts);
 	seen_at(s->frame.T_room_head.p, parts[0].T_room_part[3], want);
 	for (int y = -2; y <= 2; y++)
-		for (int x = -2; x <= 2; x++) {
+		for (int x = -4; x <= 4; x++) {
 			const int level = at(s, (int)lrint(want[0]) + x, (int)lrint(want[1]) + y)[1];
 
-			most = level > most ? level : most;
+			*rim = level < *rim ? level : *rim;
+			if (abs(x) <= 2)
+				most = level > most ? level : most;
 		}
 	return most;
 }
 
 static void readable_and_faint_behind(void **state)
 {
-	static const float exposures[] = { 1e-6f, 1e-2f, 1 };
-	int levels[3], hidden;
+	static const float exposures[] = { 1e-6f, 1e-2f, 1, 1e9f };
+	int levels[4], rim = 0, behind, hidden;
 	struct setup s;
 
 	start(&s, *state, &front, RENDERER_MONO, -4);
 	s.frame.hand.T_room_wand = (struct gr_pose){ { 0.1f, 1.6f, -0.5f }, { 0, 0, 0, 1 } };
-	for (int i = 0; i < 3; i++) {
+	s.frame.hand.scale = SCALE;
+	for (int i = 0; i < 4; i++) {
 		s.frame.exposure = exposures[i];
-		levels[i] = mark_of(&s);
+		levels[i] = mark_of(&s, &rim);
 	}
+	assert_true(at(&s, 90, 5)[1] > 250); /* at the last one all else is white, */
+	assert_true(rim < 60);               /* and it still has its rim */
 	stop(&s);
 	/* The hand is in a wall: still there, and seen to be behind. */
 	start(&s, *state, &front, RENDERER_MONO, -0.3f);
 	s.frame.hand.T_room_wand = (struct gr_pose){ { 0.1f, 1.6f, -0.5f }, { 0, 0, 0, 1 } };
 	s.frame.exposure = 1e-6f;
-	hidden = mark_of(&s);
+	hidden = mark_of(&s, &behind);
 	stop(&s);
-	printf("# the mark is at %d, %d and %d of 255 over six decades of exposure; behind a surface at %d\n",
-	       levels[0], levels[1], levels[2], hidden);
+	printf("# the mark is at %d, %d and %d of 255 over six decades of exposure, in white at %d with a rim at "
+	       "%d; behind a surface at %d\n",
+	       levels[0], levels[1], levels[2], levels[3], rim, hidden);
 	assert_true(levels[0] > 200 && levels[1] == levels[0] && levels[2] == levels[0]);
 	assert_true(hidden > 40 && hidden < levels[0] / 2);
 }

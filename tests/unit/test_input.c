@@ -125,6 +125,18 @@ static void restarted_node_is_heard(void **state)
 	fdp_node_input(s.nodes[1].node, &in);
 	sim_run_frames(&s, 10);
 	assert_int_equal(heard.last[1].buttons, 9);
+	/* A master that begins hears what the windows have, though nothing changes there. */
+	in = (struct fdp_input){ .pointer = { 0.5f, -0.5f } };
+	fdp_node_input(s.nodes[1].node, &in);
+	sim_run_ns(&s, 2000 * SIM_MS);
+	sim_kill_master(&s);
+	memset(&heard, 0, sizeof heard);
+	sim_start_master(&s);
+	s.master->ops.input = on_input;
+	sim_assemble(&s);
+	sim_run_ns(&s, 1000 * SIM_MS);
+	assert_memory_equal(&heard.last[1], &in, sizeof in);
+	assert_int_equal(heard.count[0], 0);
 	sim_finish(&s);
 }
 
