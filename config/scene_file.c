@@ -255,6 +255,9 @@ static void hash_tone(struct canonical *c, const struct scene_tone *tone)
 	canonical_floats(c, &tone->exposure, 1);
 	/* The curve may be changed while the room runs, so what the others take counts, too. */
 	canonical_floats(c, &tone->adaptation, 1);
+	canonical_u64(c, tone->adapt);
+	if (tone->adapt == SCENE_ADAPT_EXPONENTIAL)
+		canonical_floats(c, &tone->adapt_s, 1);
 	canonical_floats(c, &tone->luminance_max, 1);
 	canonical_floats(c, &tone->bias, 1);
 	canonical_u64(c, tone->srgb);

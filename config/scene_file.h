@@ -140,12 +140,16 @@ struct scene_gi {
 /* In the order of the parameter TONE_CURVE. */
 enum scene_curve { SCENE_CURVE_LINEAR, SCENE_CURVE_REINHARD, SCENE_CURVE_DRAGO, SCENE_CURVE_PATTANAIK };
 #define SCENE_CURVES 4
+/* Whether the eye of the last two gets used to what it looks at, and how: renderer/tone/adapt.h. */
+enum scene_adapt { SCENE_ADAPT_FIXED, SCENE_ADAPT_PATTANAIK, SCENE_ADAPT_EXPONENTIAL };
 
 /* Tone curve (renderer/tone/curve.h) and encoding gamma (thesis table 3.1). */
 struct scene_tone {
 	enum scene_curve curve;
 	float exposure;       /* factor on radiance before the curve */
-	float adaptation;     /* drago, pattanaik: what the eye is used to, cd/m^2 */
+	float adaptation;     /* drago, pattanaik: what the eye is used to, at first unless fixed, cd/m^2 */
+	enum scene_adapt adapt;
+	float adapt_s;        /* exponential: until 1/e of a change is left */
 	float luminance_max;  /* drago: what becomes white, cd/m^2 */
 	float bias;           /* drago: 0.5..0.9 */
 	float gamma_display;  /* of the display, 2.2 */

@@ -12,6 +12,7 @@ static const char *const environment_choices[] = { "none", "constant", "image", 
 static const char *const projection_choices[] = { "latlong", "cross", "faces", NULL };
 static const char *const mode_choices[] = { "repaired", "thesis", NULL };
 static const char *const curve_choices[] = { "linear", "reinhard", "drago", "pattanaik", NULL };
+static const char *const adapt_choices[] = { "fixed", "pattanaik", "exponential", NULL };
 static const char *const ambient_choices[] = { "dark", "dim", "light", NULL };
 
 /* A dark room darkens what is seen in it: the brighter the room, the smaller the exponent. */
@@ -226,7 +227,13 @@ static const struct option tone_options[] = {
 	  AT(scene_form_tone, tone.exposure), .help = "factor on radiance before the curve" },
 	{ .key = "adaptation", .type = OPTION_FLOAT, .min = 1e-6, .max = 1e9, .unit = "cd/m2",
 	  .standard = "100", AT(scene_form_tone, tone.adaptation),
-	  .help = "drago and pattanaik: the luminance that the eye is used to" },
+	  .help = "drago and pattanaik: the luminance that the eye is used to, when the room begins unless `adapt` is fixed" },
+	{ .key = "adapt", .type = OPTION_CHOICE, .choices = adapt_choices, .standard = "fixed",
+	  AT(scene_form_tone, tone.adapt),
+	  .help = "drago and pattanaik: whether the eye stays as it is, or gets used to what the visitor looks at, on all walls alike: rods and cones as Pattanaik et al. 2000, or exponentially" },
+	{ .key = "adapt_s", .type = OPTION_FLOAT, .min = 0.01, .max = 3600, .unit = "s", .standard = "0.5",
+	  AT(scene_form_tone, tone.adapt_s),
+	  .help = "adapt = \"exponential\": until 1/e of a change is left" },
 	{ .key = "luminance_max", .type = OPTION_FLOAT, .min = 1e-6, .max = 1e12, .unit = "cd/m2",
 	  .standard = "10000", AT(scene_form_tone, tone.luminance_max),
 	  .help = "drago: the luminance that becomes white" },

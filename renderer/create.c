@@ -146,6 +146,8 @@ static int create_tone(struct renderer *r)
 			     r->params.dither && bits < 16 ? bits : 0);
 	free(map);
 	r->params.projector = NULL; /* the caller's, and in the map now */
+	if (result == GR_OK && r->file->tone.adapt != SCENE_ADAPT_FIXED && r->params.wall_given)
+		result = gaze_create(&r->gaze);
 	return result;
 }
 
@@ -238,6 +240,9 @@ static void log_stages(const struct renderer *r, const struct emissive_patches *
 		r->eye_count, r->eye_count > 1 ? "s" : "", r->params.width, r->params.height);
 	gr_info("stage tone: %s, %s", tone_curve_name(r->file->tone.curve),
 		r->file->tone.srgb ? "sRGB" : "power law");
+	if (r->gaze)
+		gr_info("stage gaze: %d cells of the wall at most, for the eye that gets used to what it looks at",
+			GAZE_CELLS * GAZE_CELLS);
 }
 
 static int go_on(const struct renderer *r)
@@ -302,6 +307,7 @@ void renderer_destroy(struct renderer **renderer)
 	timers_destroy(&r->timers);
 	hud_destroy(&r->hud);
 	tone_destroy(&r->tone);
+	gaze_destroy(&r->gaze);
 	backdrop_finish(&r->backdrop);
 	for (int i = 0; i < EYES_MAX; i++) {
 		shade_picture_finish(&r->eyes[i].picture);

@@ -271,6 +271,34 @@ static void end_frame(struct renderer *r)
 	count_errors(r);
 }
 
+/* The scene's eye gets used to what it sees, and this curve shows it. */
+static bool wants_gaze(const struct renderer *r, const struct render_frame *frame)
+{
+	return r->gaze && (frame->curve == SCENE_CURVE_DRAGO || frame->curve == SCENE_CURVE_PATTANAIK);
+}
+
+/* Of the first eye: the two see the same light but for a few centimetres. */
+static void measure_gaze(struct renderer *r, const struct render_frame *frame, bool drawn)
+{
+	const vec3 ahead = { 0, 0, -1 };
+	struct gaze_view view = { .wall = r->params.wall };
+	vec3 eye, direction;
+
+	eyes_position(r->params.eyes, 0, frame, eye);
+	gr_pose_direction(&frame->T_room_head, ahead, direction);
+	glm_vec3_normalize(direction);
+	glm_vec3_copy(eye, view.eye);
+	glm_vec3_copy(direction, view.direction);
+	if (!drawn && r->gazed && memcmp(&view, &r->gaze_view, sizeof view) == 0)
+		return;
+	timers_begin(r->timers, STAGE_GAZE, "gaze");
+	/* From behind its plane a wall shows nothing, and nothing of it is looked at. */
+	r->gazed = gaze_measure(r->gaze, &view, r->eyes[0].picture.radiance, r->params.width,
+				r->params.height, r->stats.frames + 1) == GR_OK;
+	timers_end(r->timers, STAGE_GAZE);
+	r->gaze_view = view;
+}
+
 static int draw_frame(struct renderer *r, const struct render_frame *frame,
 		      const struct scene_camera *camera)
 {
@@ -292,6 +320,8 @@ static int draw_frame(struct renderer *r, const struct render_frame *frame,
 			result = GR_NOTHING;
 		if (drawn || tone || forgets || (hud && seen))
 			show_eye(r, i, seen && r->hud && hud_shown(r->hud));
+		if (i == 0 && !camera && wants_gaze(r, frame))
+			measure_gaze(r, frame, drawn);
 	}
 	end_frame(r);
 	return result;
@@ -321,6 +351,11 @@ static bool frame_valid(const struct renderer *r, const struct render_frame *fra
 	       frame->scattering_per_m >= 0 && isfinite(frame->absorption_per_m) &&
 	       isfinite(frame->scattering_per_m) && isfinite(frame->gi_incremental) &&
 	       tone_look_valid(&look) && isfinite(frame->gamma_encode) && frame->gamma_encode > 0;
+}
+
+int renderer_glance(struct renderer *renderer, struct adapt_sample *out, uint64_t *out_frame)
+{
+	return renderer->gaze ? gaze_newest(renderer->gaze, out, out_frame) : GR_NOTHING;
 }
 
 int renderer_draw(struct renderer *renderer, const struct render_frame *frame)

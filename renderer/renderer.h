@@ -20,7 +20,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-struct projector; /* renderer/tone/projector.h */
+struct projector;    /* renderer/tone/projector.h */
+struct adapt_sample; /* renderer/tone/adapt.h */
 
 enum renderer_eyes {
 	RENDERER_MONO,
@@ -121,6 +122,13 @@ int renderer_share_set(struct renderer *renderer, unsigned index, unsigned count
 /* Once, when renderer_finished has said so. */
 int renderer_share_take(struct renderer *renderer, uint8_t *bytes, size_t size, size_t *out_len);
 int renderer_share_put(struct renderer *renderer, const uint8_t *bytes, size_t len);
+
+/*
+ * What the eye looks at of this wall (renderer/tone/gaze.h), of the newest frame that the
+ * GPU has finished, counted from 1. GR_NOTHING: none yet, or the scene's tone.adapt is fixed.
+ * Never waits.
+ */
+int renderer_glance(struct renderer *renderer, struct adapt_sample *out, uint64_t *out_frame);
 
 struct renderer_stats {
 	uint64_t frames, skipped_eyes;

@@ -8,6 +8,7 @@
 #include "renderer/gl/program.h"
 #include "renderer/plan_light.h"
 #include "renderer/renderer.h"
+#include "renderer/tone/gaze.h"
 #include "renderer/tone/tone.h"
 #include "renderer/view/backdrop.h"
 #include "renderer/view/emissive.h"
@@ -19,7 +20,7 @@
 
 #include <epoxy/gl.h>
 
-enum renderer_stage { STAGE_SHADOW, STAGE_GI, STAGE_GBUFFER, STAGE_SHADE, STAGE_TONE, STAGE_HUD };
+enum renderer_stage { STAGE_SHADOW, STAGE_GI, STAGE_GBUFFER, STAGE_SHADE, STAGE_TONE, STAGE_HUD, STAGE_GAZE };
 
 /* One eye's picture and what it was drawn from. */
 struct renderer_eye {
@@ -50,6 +51,7 @@ struct renderer {
 	struct backdrop backdrop;
 	struct tone_stage *tone;
 	struct hud_stage *hud; /* NULL: no wall, no hand before it */
+	struct gaze_stage *gaze; /* NULL: the eye stays as the scene file says */
 	struct timers *timers;
 	unsigned gbuffer_program, shade_program;
 	unsigned irradiance_program; /* 0: nobody has asked yet */
@@ -64,6 +66,8 @@ struct renderer {
 	bool gi_on;
 	uint64_t light_version; /* grows when lamps or medium changed */
 	struct tone_values tone_values;
+	struct gaze_view gaze_view; /* that was measured last */
+	bool gazed;		    /* and the picture is still that */
 
 	struct renderer_stats stats;
 	struct gr_log_limit nonfinite_limit, error_limit;

@@ -78,6 +78,12 @@ tests_accuracy_test_backdrop_SOURCES = tests/accuracy/test_backdrop.c $(VIEW_TES
 tests_accuracy_test_backdrop_CFLAGS = $(VIEW_TEST_CFLAGS)
 tests_accuracy_test_backdrop_LDADD = $(VIEW_TEST_LIBS)
 
+check_PROGRAMS += tests/accuracy/test_gaze
+TESTS += tests/accuracy/test_gaze
+tests_accuracy_test_gaze_SOURCES = tests/accuracy/test_gaze.c tests/unit/gl.h tests/unit/unit.h
+tests_accuracy_test_gaze_CFLAGS = $(VIEW_TEST_CFLAGS)
+tests_accuracy_test_gaze_LDADD = $(VIEW_TEST_LIBS)
+
 # scenes and lamps that nobody would have, through every method
 HARD_SOURCES = tests/accuracy/hard/model.c tests/accuracy/hard/model.h \
 	tests/accuracy/hard/room.c tests/accuracy/hard/room.h tests/unit/glb.h tests/unit/unit.h

@@ -70,31 +70,30 @@ int adapt_step(struct adapt_state *state, const struct adapt_params *params, dou
 	return GR_OK;
 }
 
-int adapt_sample_add(struct adapt_sample *sample, double luminance)
+int adapt_sample_add(struct adapt_sample *sample, double luminance, double solid_angle)
 {
-	if (!isfinite(luminance))
+	if (!isfinite(luminance) || !(solid_angle > 0) || !isfinite(solid_angle))
 		return GR_NOTHING;
-	sample->log_sum += log(level_of(luminance));
+	sample->log_sum += solid_angle * log(level_of(luminance));
 	sample->max = fmax(sample->max, luminance);
-	sample->count++;
+	sample->solid_angle += solid_angle;
 	return GR_OK;
 }
 
 int adapt_merge(const struct adapt_sample *samples, size_t count, double *goal, double *max)
 {
-	double sum = 0, most = 0;
-	uint64_t pixels = 0;
+	double sum = 0, most = 0, solid_angle = 0;
 
 	for (size_t i = 0; i < count; i++) {
 		if (!isfinite(samples[i].max))
 			return GR_NOTHING;
 		sum += samples[i].log_sum;
 		most = fmax(most, samples[i].max);
-		pixels += samples[i].count;
+		solid_angle += samples[i].solid_angle;
 	}
-	if (!pixels || !isfinite(sum))
+	if (!(solid_angle > 0) || !isfinite(sum / solid_angle))
 		return GR_NOTHING;
-	*goal = exp(sum / (double)pixels);
+	*goal = level_of(exp(sum / solid_angle));
 	*max = most;
 	return GR_OK;
 }

@@ -54,16 +54,16 @@ int adapt_settle(struct adapt_state *state, double level);
 int adapt_step(struct adapt_state *state, const struct adapt_params *params, double goal,
 	       double dt_s);
 
-/* What a wall's pixels in the region looked at tell: to be added up over walls. */
+/* What a wall tells of the region looked at: to be added up over walls. */
 struct adapt_sample {
-	double log_sum; /* of log(cd/m^2), natural, each within the levels above */
-	double max;     /* cd/m^2 of the whole wall */
-	uint64_t count; /* of pixels that are in log_sum */
+	double log_sum;     /* of log(cd/m^2), natural, each within the levels above, times solid angle */
+	double solid_angle; /* of what is in log_sum, sr; 0: nothing of this wall is looked at */
+	double max;         /* cd/m^2 of the whole wall */
 };
-/* One pixel more. What is not finite is left out; GR_NOTHING then. */
-int adapt_sample_add(struct adapt_sample *sample, double luminance);
+/* One more piece. What is not finite, or has no size, is left out; GR_NOTHING then. */
+int adapt_sample_add(struct adapt_sample *sample, double luminance, double solid_angle);
 /*
- * Goal (log average) and maximum over all walls. GR_NOTHING: no wall has a pixel
+ * Goal (log average) and maximum over all walls. GR_NOTHING: no wall has anything
  * in the region, or a sum is not finite; *goal and *max stay.
  */
 int adapt_merge(const struct adapt_sample *samples, size_t count, double *goal, double *max);

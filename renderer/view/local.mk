@@ -2,6 +2,7 @@
 RENDERER_SOURCES += \
 	renderer/tone/adapt.c renderer/tone/adapt.h renderer/tone/curve.c renderer/tone/curve.h \
 	renderer/tone/encode.c renderer/tone/encode.h renderer/tone/srgb.h \
+	renderer/tone/gaze.c renderer/tone/gaze.h \
 	renderer/tone/projector.c renderer/tone/projector.h \
 	renderer/tone/tone.c renderer/tone/tone.h \
 	renderer/view/backdrop.c renderer/view/backdrop.h \
@@ -23,7 +24,7 @@ SHADERS += \
 	renderer/shaders/env_sh.glsl renderer/shaders/env_sh_bands.comp \
 	renderer/shaders/env_sh_rows.comp renderer/shaders/env_sh_turn.comp \
 	renderer/shaders/depth.vert renderer/shaders/gbuffer.frag \
-	renderer/shaders/gi_none.glsl renderer/shaders/hud.frag renderer/shaders/hud.vert \
+	renderer/shaders/gaze.comp renderer/shaders/gi_none.glsl renderer/shaders/hud.frag renderer/shaders/hud.vert \
 	renderer/shaders/lamp.glsl \
 	renderer/shaders/lamp_shadow.glsl renderer/shaders/medium.glsl \
 	renderer/shaders/patch.glsl renderer/shaders/patch_shadow.glsl \

@@ -344,16 +344,18 @@ static void merging(void **state)
 
 	(void)state;
 	assert_int_equal(adapt_merge(walls, 3, &goal, &max), GR_NOTHING);
-	assert_int_equal(adapt_sample_add(&walls[0], NAN), GR_NOTHING);
-	assert_int_equal(adapt_sample_add(&walls[0], INFINITY), GR_NOTHING);
+	assert_int_equal(adapt_sample_add(&walls[0], NAN, 1), GR_NOTHING);
+	assert_int_equal(adapt_sample_add(&walls[0], INFINITY, 1), GR_NOTHING);
+	assert_int_equal(adapt_sample_add(&walls[0], 1, 0), GR_NOTHING);
+	assert_int_equal(adapt_sample_add(&walls[0], 1, NAN), GR_NOTHING);
 	assert_int_equal(adapt_merge(walls, 3, &goal, &max), GR_NOTHING);
 	assert_true(goal == 7 && max == 8);
 	for (int i = 0; i < 100; i++)
-		assert_int_equal(adapt_sample_add(&walls[1], 0), GR_OK);
+		assert_int_equal(adapt_sample_add(&walls[1], 0, 1e-4), GR_OK);
 	assert_int_equal(adapt_merge(walls, 3, &goal, &max), GR_OK);
 	assert_true(fabs(goal / ADAPT_LEVEL_MIN - 1) < 1e-9 && max == 0);
 	for (int i = 0; i < 100; i++)
-		assert_int_equal(adapt_sample_add(&walls[2], 100), GR_OK);
+		assert_int_equal(adapt_sample_add(&walls[2], 100, 1e-4), GR_OK);
 	assert_int_equal(adapt_merge(walls, 3, &goal, &max), GR_OK);
 	assert_true(fabs(goal / 1e-2 - 1) < 1e-9 && max == 100);
 	walls[2].max = NAN;
