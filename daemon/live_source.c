@@ -1,6 +1,7 @@
 #include "daemon/live_source.h"
 
 #include "base/result.h"
+#include "protocol/glance.h"
 #include "protocol/input.h"
 
 #include <math.h>
@@ -60,6 +61,20 @@ void live_source_window_input(struct live_source *live, unsigned node, const str
 	/* With the frame clock time goes by frames: what is held counts until another word comes. */
 	trackers_window_input(live->trackers, node, &in,
 			      live->frame_clock ? live->last_time_ns : live->base_ns + now_ns - live->start_ns);
+}
+
+void live_source_glance(struct live_source *live, unsigned node, const struct fdp_glance *glance)
+{
+	const struct adapt_sample sample = { (double)glance->log_sum, (double)glance->solid_angle,
+					     (double)glance->max };
+
+	/* What no wall can look like changes nothing. */
+	(void)master_adapt_take(&live->scene_state.adapt, node, &sample);
+}
+
+void live_source_node_gone(struct live_source *live, unsigned node)
+{
+	master_adapt_forget(&live->scene_state.adapt, node);
 }
 
 void live_source_adopt(struct live_source *live, const struct param_state *params, uint64_t last,

@@ -28,9 +28,15 @@ void live_source_init(struct live_source *live, const struct layout *layout,
 		      const struct scene_file *scene, struct trackers *trackers, bool frame_clock);
 
 struct fdp_input;
+struct fdp_glance;
 /* What was done at a node's window; now_ns: CLOCK_MONOTONIC. */
 void live_source_window_input(struct live_source *live, unsigned node, const struct fdp_input *input,
 			      int64_t now_ns);
+
+/* What the eye looks at of a node's wall. */
+void live_source_glance(struct live_source *live, unsigned node, const struct fdp_glance *glance);
+/* A node has left the room. */
+void live_source_node_gone(struct live_source *live, unsigned node);
 
 /*
  * Goes on from another master's frame, which was shown at about frame_ns: scene time

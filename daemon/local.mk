@@ -15,6 +15,7 @@ daemon_libgdaemon_a_SOURCES = \
 	daemon/loop.c daemon/loop.h \
 	daemon/master_input.h \
 	daemon/master_params.h \
+	daemon/master_adapt.c daemon/master_adapt.h \
 	daemon/master_settings.c daemon/master_settings.h \
 	daemon/master_state.c daemon/master_state.h \
 	daemon/node_frame.c daemon/node_frame.h \
@@ -61,6 +62,7 @@ daemon_grotto_master_LDADD = $(DAEMON_LIBS)
 daemon_grotto_node_SOURCES = \
 	daemon/node.c daemon/node.h \
 	daemon/node_control.c daemon/node_control.h \
+	daemon/node_glance.c daemon/node_glance.h \
 	daemon/node_input.c daemon/node_input.h \
 	daemon/node_light.c daemon/node_light.h \
 	daemon/node_main.c \

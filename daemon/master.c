@@ -52,6 +52,14 @@ static void on_input(void *ctx, unsigned node, const struct fdp_input *input)
 		live_source_window_input(m->params.live, node, input, m->heard_ns);
 }
 
+static void on_glance(void *ctx, unsigned node, const struct fdp_glance *glance)
+{
+	struct master *m = ctx;
+
+	if (m->params.live)
+		live_source_glance(m->params.live, node, glance);
+}
+
 static void on_sample(void *ctx, size_t tracker, const struct track_sample *sample, bool taken)
 {
 	struct master *m = ctx;
@@ -407,7 +415,8 @@ static int create_protocol(struct master *m)
 		.share_bytes = m->params.scene->gi.share == SCENE_SHARE_CLUSTER ? FDP_SHARE_MAX : 0,
 	};
 	struct fdp_master_ops ops = {
-		.send = send_datagram, .event = master_on_event, .report = on_report, .input = on_input, .ctx = m
+		.send = send_datagram, .event = master_on_event, .report = on_report, .input = on_input,
+		.glance = on_glance, .ctx = m
 	};
 	int r;
 

@@ -22,6 +22,8 @@ void master_node_gone(struct master *m, int node)
 	m->members &= ~(UINT64_C(1) << node);
 	m->behind &= ~(UINT64_C(1) << node);
 	frame_stats_gone(&m->stats, (unsigned)node);
+	if (m->params.live && node >= 0)
+		live_source_node_gone(m->params.live, (unsigned)node);
 }
 
 static void node_refused(struct master *m, const struct fdp_master_event *event, int64_t now_ns)

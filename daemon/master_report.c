@@ -271,6 +271,21 @@ static void write_settings(struct json *json, const struct master *m)
 	json_close(json, '}');
 }
 
+/* Where the room's eye gets used to what it looks at. */
+static void write_eye(struct json *json, const struct master *m)
+{
+	const struct master_adapt *adapt = &m->params.live->scene_state.adapt;
+
+	if (!adapt->on)
+		return;
+	json_open(json, "eye", '{');
+	json_f64(json, "cones", adapt->eye.cone);
+	json_f64(json, "rods", adapt->eye.rod);
+	json_f64(json, "looks_at", adapt->goal);
+	json_f64(json, "white", adapt->max);
+	json_close(json, '}');
+}
+
 static void write_hand(struct json *json, const struct master *m)
 {
 	const struct hand *hand = &m->params.live->scene_state.hand;
@@ -315,6 +330,7 @@ int master_write_json(const struct master *m, int64_t now_ns, char *text, size_t
 	if (m->params.live) {
 		write_tracking(&json, m, now_ns);
 		write_settings(&json, m);
+		write_eye(&json, m);
 		write_hand(&json, m);
 	}
 	if (m->params.replay)

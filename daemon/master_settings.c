@@ -52,6 +52,7 @@ void master_settings_init(struct master_settings *settings, const struct scene_f
 		.eye_separation = eye_separation_m,
 		.adaptation = scene->tone.adaptation,
 		.luminance_max = scene->tone.luminance_max,
+		.eye_adapts = scene->tone.adapt != SCENE_ADAPT_FIXED,
 		.tone_bias = scene->tone.bias,
 	};
 	for (size_t i = 0; i < scene->lamp_count && i < PARAM_MAX_LAMPS; i++) {
@@ -183,7 +184,7 @@ void master_settings_read(struct master_settings *settings, const struct param_s
 	       sizeof settings->lamp_intensity);
 }
 
-/* An eye that has long been used to it, until something watches what is looked at. */
+/* An eye that has long been used to it. */
 static int apply_adaptation(float level, struct param_state *params, uint64_t frame)
 {
 	struct adapt_state eye;
@@ -207,7 +208,12 @@ int master_settings_apply(const struct master_settings *settings, struct param_s
 
 	for (size_t i = 0; i < SIMPLE_COUNT; i++) {
 		const void *at = (const char *)settings + simple[i].offset;
-		int set = simple[i].id == PARAM_ADAPTATION ?
+		int set;
+
+		if (settings->eye_adapts &&
+		    (simple[i].id == PARAM_ADAPTATION || simple[i].id == PARAM_LUMINANCE_MAX))
+			continue;
+		set = simple[i].id == PARAM_ADAPTATION ?
 				  apply_adaptation(settings->adaptation, params, frame) :
 				  param_set(params, simple[i].id, at, frame);
 

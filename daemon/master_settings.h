@@ -15,6 +15,7 @@ struct master_settings {
 	uint32_t gi_on, gi_steps, gi_gathers, tone_curve;
 	float gi_incremental, absorption, scattering, exposure, gamma_encode, eye_separation;
 	float adaptation, luminance_max, tone_bias; /* of the tone curve; cd/m^2, cd/m^2 */
+	bool eye_adapts; /* what the first two become in a frame is master_adapt.h's */
 	uint32_t lamp_on;                     /* bit i: lamp i of the scene file */
 	float lamp_intensity[3 * PARAM_MAX_LAMPS];
 };

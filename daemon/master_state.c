@@ -10,6 +10,7 @@ void master_state_init(struct master_state *state, const struct layout *layout,
 {
 	*state = (struct master_state){ .layout = layout, .scene = scene };
 	master_settings_init(&state->settings, scene, layout->eye_separation_m);
+	master_adapt_init(&state->adapt, &scene->tone);
 	state->T_scene_room = scene->room;
 	hand_init(&state->hand, &layout->hand, scene);
 }
@@ -23,6 +24,7 @@ void master_state_adopt(struct master_state *state, const struct param_state *pa
 	if (gr_pose_valid(&room)) /* else it was never set */
 		state->T_scene_room = room;
 	master_settings_read(&state->settings, params);
+	master_adapt_adopt(&state->adapt, params);
 	hand_adopt(&state->hand, params);
 	memcpy(&state->epoch, param_get(params, PARAM_GI_EPOCH), sizeof state->epoch);
 }
@@ -163,6 +165,11 @@ int master_state_frame(struct master_state *state, const struct master_input *in
 	set_lamps(state, input, &setter);
 	if (master_settings_apply(&state->settings, params, frame, refused) < 0)
 		setter.result = GR_ERR_RANGE;
+	master_adapt_step(&state->adapt, state->settings.adaptation, input->step_ns);
+	if (master_adapt_apply(&state->adapt, params, frame) < 0) {
+		*refused = param_info(PARAM_ADAPTATION)->name;
+		setter.result = GR_ERR_RANGE;
+	}
 	if (hand_write(&state->hand, input->step_ns, params, frame, refused) < 0)
 		setter.result = GR_ERR_RANGE;
 	return setter.result;

@@ -9,6 +9,7 @@
 #include "config/layout.h"
 #include "config/scene_file.h"
 #include "daemon/hand.h"
+#include "daemon/master_adapt.h"
 #include "daemon/master_input.h"
 #include "daemon/master_settings.h"
 #include "protocol/params.h"
@@ -22,6 +23,7 @@ struct master_state {
 	struct master_settings settings;
 	struct gr_pose T_scene_room;
 	struct hand hand;
+	struct master_adapt adapt;
 	uint64_t epoch;   /* GI_EPOCH: frame number of the last restart of the light */
 };
 

@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/result.h"
 #include "daemon/node_frame.h"
+#include "daemon/node_glance.h"
 #include "daemon/node_input.h"
 #include "daemon/node_vitals.h"
 #include "daemon/swap_wait.h"
@@ -361,6 +362,7 @@ static void finish_drawing(struct node *n)
 	}
 	n->ready = frame;
 	node_share_end(&n->share, n->fdp, frame, now_ns);
+	node_glance_tell(n->renderer, n->fdp);
 	fdp_node_ready(n->fdp, frame, (uint32_t)((now_ns - n->drawing_ns) / GR_NS_PER_US), now_ns);
 	serve_protocol(n);
 }

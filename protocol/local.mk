@@ -5,6 +5,7 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/clock_offset.c protocol/clock_offset.h \
 	protocol/delta.c \
 	protocol/fragment.c protocol/fragment.h \
+	protocol/glance.c protocol/glance.h \
 	protocol/input.c protocol/input.h \
 	protocol/joints.c protocol/joints.h \
 	protocol/key.c protocol/key.h \
@@ -27,6 +28,7 @@ protocol_libgprotocol_a_SOURCES = \
 	protocol/node_call.c \
 	protocol/node_clock.c \
 	protocol/node_frame.c \
+	protocol/node_glance.c \
 	protocol/node_input.c \
 	protocol/node_share.c \
 	protocol/node_vitals.c \

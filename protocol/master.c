@@ -16,7 +16,7 @@ _Static_assert(FDP_HEADER_BYTES + FDP_BODY_MAX <= FDP_DATAGRAM_MIN,
 
 #define BIT(node) (UINT64_C(1) << (node))
 #define MASTER_KINDS (1u << FDP_JOIN | 1u << FDP_ACK | 1u << FDP_NACK | 1u << FDP_READY | \
-		      1u << FDP_SWAPPED | 1u << FDP_LEAVE | 1u << FDP_VITALS | 1u << FDP_INPUT)
+		      1u << FDP_SWAPPED | 1u << FDP_LEAVE | 1u << FDP_VITALS | 1u << FDP_INPUT | 1u << FDP_GLANCE)
 #define SHARE_KINDS (1u << FDP_SLICE | 1u << FDP_LACK)
 
 static void to_caller(void *ctx, int to, const uint8_t *bytes, size_t len)

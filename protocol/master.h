@@ -14,6 +14,7 @@
 #define GROTTO_PROTOCOL_MASTER_H
 
 #include "protocol/clock_offset.h"
+#include "protocol/glance.h"
 #include "protocol/input.h"
 #include "protocol/key.h"
 #include "protocol/pace.h"
@@ -148,6 +149,8 @@ struct fdp_master_ops {
 	void (*report)(void *ctx, unsigned node, unsigned kind, const struct fdp_report *report);
 	/* What is done at the window of a node that is in; never older than the last. May be NULL. */
 	void (*input)(void *ctx, unsigned node, const struct fdp_input *input);
+	/* What the eye looks at of the wall of a node that is in; likewise. May be NULL. */
+	void (*glance)(void *ctx, unsigned node, const struct fdp_glance *glance);
 	void *ctx;
 };
 

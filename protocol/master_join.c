@@ -108,7 +108,7 @@ static void admit(struct fdp_master *m, unsigned node, const struct fdp_header *
 	fdp_window_start(&peer->window_out, m->sent_to_all);
 	peer->joined_ns = now_ns;
 	peer->mismatch_frame = 0;
-	peer->input_sequence = 0;
+	peer->input_sequence = peer->glance_sequence = 0;
 	peer->refused[0] = 0;
 	peer->state = fdp_peer_next(peer->state, FDP_PEER_JOINS);
 	if (!fdp_master_is_follower(m, node)) {

@@ -99,6 +99,7 @@ struct fdp_peer {
 	uint32_t path_ns[FDP_PATHS]; /* of its last SWAPs */
 	uint64_t path_count;
 	uint64_t input_sequence;    /* of the newest INPUT's datagram */
+	uint64_t glance_sequence;   /* of the newest GLANCE's */
 	char refused[FDP_REASON_MAX];
 };
 

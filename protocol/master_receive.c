@@ -165,6 +165,21 @@ static enum fdp_verdict on_input(struct fdp_master *m, const struct fdp_header *
 	return FDP_GOOD;
 }
 
+static enum fdp_verdict on_glance(struct fdp_master *m, const struct fdp_header *h, const uint8_t *body)
+{
+	struct fdp_peer *peer = &m->peers[h->sender];
+	struct fdp_glance glance;
+
+	if (fdp_master_is_follower(m, h->sender) || fdp_glance_decode(body, h->payload_len, &glance))
+		return FDP_BAD_FORMAT;
+	if (h->sequence < peer->glance_sequence)
+		return FDP_GOOD;
+	peer->glance_sequence = h->sequence;
+	if (m->ops.glance)
+		m->ops.glance(m->ops.ctx, h->sender, &glance);
+	return FDP_GOOD;
+}
+
 /* An authentic, new datagram of a present peer. */
 static enum fdp_verdict dispatch(struct fdp_master *m, const struct fdp_header *h,
 				 const uint8_t *body, int64_t now_ns)
@@ -191,6 +206,8 @@ static enum fdp_verdict dispatch(struct fdp_master *m, const struct fdp_header *
 		return FDP_GOOD;
 	case FDP_INPUT:
 		return on_input(m, h, body);
+	case FDP_GLANCE:
+		return on_glance(m, h, body);
 	case FDP_NACK:
 		if (fdp_nack_decode(body, h->payload_len, &nack))
 			return FDP_BAD_FORMAT;

@@ -346,6 +346,7 @@ void fdp_node_tick(struct fdp_node *n, int64_t now_ns)
 		fdp_node_frame_tick(n, now_ns);
 		fdp_node_vitals_tick(n, now_ns);
 		fdp_node_input_tick(n, now_ns);
+		fdp_node_glance_tick(n, now_ns);
 		return;
 	}
 	if (!n->guards && (!n->asked || now_ns - n->asked_ns >= ask_again_ns(n)))
@@ -354,7 +355,7 @@ void fdp_node_tick(struct fdp_node *n, int64_t now_ns)
 
 int64_t fdp_node_next(const struct fdp_node *n)
 {
-	int64_t next = fdp_node_call_at(n), frame_next, input_next;
+	int64_t next = fdp_node_call_at(n), frame_next, input_next, glance_next;
 
 	if (n->status == FDP_NODE_ALONE)
 		return 0;
@@ -370,6 +371,8 @@ int64_t fdp_node_next(const struct fdp_node *n)
 	next = frame_next < next ? frame_next : next;
 	input_next = fdp_node_input_next(n);
 	next = input_next < next ? input_next : next;
+	glance_next = fdp_node_glance_next(n);
+	next = glance_next < next ? glance_next : next;
 	return fdp_node_vitals_next(n) < next ? fdp_node_vitals_next(n) : next;
 }
 

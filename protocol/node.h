@@ -18,6 +18,7 @@
 #ifndef GROTTO_PROTOCOL_NODE_H
 #define GROTTO_PROTOCOL_NODE_H
 
+#include "protocol/glance.h"
 #include "protocol/input.h"
 #include "protocol/master.h"
 
@@ -119,6 +120,8 @@ void fdp_node_stages(struct fdp_node *node, const struct fdp_vitals_stage *stage
 
 /* What is done at its window, as it is now; told soon if it has changed (protocol/input.h). */
 void fdp_node_input(struct fdp_node *node, const struct fdp_input *input);
+/* What the eye looks at of its wall; told soon if it has changed (protocol/glance.h). */
+void fdp_node_glance(struct fdp_node *node, const struct fdp_glance *glance);
 
 void fdp_node_leave(struct fdp_node *node, int64_t now_ns);
 enum fdp_node_state fdp_node_status(const struct fdp_node *node);

@@ -1,7 +1,8 @@
 /*
  * Inside the node's half of FDP: node.c has membership, node_call.c which of several
  * masters it is with, node_frame.c the frame, node_clock.c time, node_vitals.c what it
- * tells of itself, node_input.c what is done at its window, node_share.c the light that the nodes share out.
+ * tells of itself, node_input.c what is done at its window, node_glance.c what is looked at of its wall,
+ * node_share.c the light that the nodes share out.
  */
 #ifndef GROTTO_PROTOCOL_NODE_PRIVATE_H
 #define GROTTO_PROTOCOL_NODE_PRIVATE_H
@@ -92,6 +93,11 @@ struct fdp_node {
 		unsigned times;      /* that it is to be said, whatever is held */
 		int64_t sent_ns;
 	} input;
+	struct {
+		struct fdp_glance state;
+		bool given;
+		int64_t sent_ns; /* 0: it has changed since */
+	} glance;
 	struct fdp_vitals vitals;
 	int64_t vitals_ns; /* last told in this session; 0: not yet */
 
@@ -181,6 +187,8 @@ void fdp_node_note_clock(struct fdp_node *n, const struct fdp_announce *a, int64
 /* The swap that it announces is news: when it is due. */
 void fdp_node_note_swap(struct fdp_node *n, const struct fdp_announce *a, int64_t now_ns);
 
+void fdp_node_glance_tick(struct fdp_node *n, int64_t now_ns);
+int64_t fdp_node_glance_next(const struct fdp_node *n);
 void fdp_node_input_tick(struct fdp_node *n, int64_t now_ns);
 int64_t fdp_node_input_next(const struct fdp_node *n);
 void fdp_node_vitals_tick(struct fdp_node *n, int64_t now_ns);

@@ -25,7 +25,7 @@ static const char *const kind_names[FDP_KINDS] = {
 	[FDP_NACK] = "nack",   [FDP_PROBE] = "probe",     [FDP_READY] = "ready",
 	[FDP_SWAP] = "swap",   [FDP_SWAPPED] = "swapped", [FDP_LEAVE] = "leave",
 	[FDP_SLICE] = "slice", [FDP_LACK] = "lack",       [FDP_BEACON] = "beacon",
-	[FDP_VITALS] = "vitals", [FDP_INPUT] = "input",
+	[FDP_VITALS] = "vitals", [FDP_INPUT] = "input",     [FDP_GLANCE] = "glance",
 };
 
 const char *fdp_kind_name(enum fdp_kind kind)

@@ -60,6 +60,7 @@ enum fdp_kind {
 	FDP_BEACON,   /* master: this is the session, for those who are not in it */
 	FDP_VITALS,   /* node: how much its socket holds, where its time goes */
 	FDP_INPUT,    /* node: what is done at its window */
+	FDP_GLANCE,   /* node: what the eye looks at of its wall */
 	FDP_KINDS
 };
 

@@ -60,6 +60,12 @@ tests_unit_test_saved_state_CFLAGS = $(TEST_CFLAGS) $(SODIUM_CFLAGS)
 tests_unit_test_saved_state_LDADD = daemon/libgdaemon.a renderer/libgrenderer.a $(PROTOCOL_LIBS) $(CONFIG_LIBS) \
 	$(CMOCKA_LIBS) -lpthread
 
+check_PROGRAMS += tests/unit/test_master_adapt
+TESTS += tests/unit/test_master_adapt
+tests_unit_test_master_adapt_SOURCES = tests/unit/test_master_adapt.c tests/unit/unit.h
+tests_unit_test_master_adapt_CFLAGS = $(TEST_CFLAGS)
+tests_unit_test_master_adapt_LDADD = daemon/libgdaemon.a $(PROTOCOL_LIBS) $(RENDERER_LIBS) $(CONFIG_LIBS) $(CMOCKA_LIBS)
+
 check_PROGRAMS += tests/unit/test_hand
 TESTS += tests/unit/test_hand
 tests_unit_test_hand_SOURCES = tests/unit/test_hand.c tests/unit/unit.h
@@ -92,8 +98,8 @@ tests_loopback_type_LDADD = $(X11_LIBS)
 else
 EXTRA_DIST += tests/loopback/type.c
 endif
-dist_check_SCRIPTS += tests/loopback/hand.sh tests/loopback/window_input.sh
-TESTS += tests/loopback/hand.sh tests/loopback/window_input.sh
+dist_check_SCRIPTS += tests/loopback/adapt.sh tests/loopback/hand.sh tests/loopback/window_input.sh
+TESTS += tests/loopback/adapt.sh tests/loopback/hand.sh tests/loopback/window_input.sh
 
 dist_check_SCRIPTS += tests/loopback/plan.sh
 TESTS += tests/loopback/plan.sh
