@@ -144,6 +144,7 @@ EXTRA_DIST += \
 	tests/fuzz/corpus/datagram/announce \
 	tests/fuzz/corpus/datagram/announce-slices \
 	tests/fuzz/corpus/datagram/beacon \
+	tests/fuzz/corpus/datagram/input \
 	tests/fuzz/corpus/datagram/join \
 	tests/fuzz/corpus/datagram/lack \
 	tests/fuzz/corpus/datagram/nack \
