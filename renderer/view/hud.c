@@ -1,5 +1,6 @@
 #include "renderer/view/hud.h"
 
+#include "base/log.h"
 #include "base/result.h"
 #include "renderer/gi/gi.h"
 #include "renderer/gl/program.h"
@@ -14,7 +15,7 @@
 #define BOX_VERTICES 36
 #define CONE_VERTICES (6 * SIDES)
 #define MOST (2 * HUD_PARTS_MOST) /* rims, parts */
-#define RING 8 /* pictures whose parts the GPU may still be reading: two eyes, four frames */
+#define RING 16 /* pictures whose parts the GPU may still be reading: two eyes, eight frames */
 #define RIM_M 0.0012f /* at scale 1 */
 #define NEAR_M 0.01f
 #define FAR_M 1e4f
@@ -29,8 +30,11 @@ struct hud_instance {
 	float color[4];
 };
 
+#define INSTANCE_BYTES ((GLsizeiptr)(RING * MOST * sizeof(struct hud_instance)))
+
 struct hud_stage {
 	unsigned program, vao, vertices, instances;
+	struct hud_instance *mapped; /* instances, for as long as the stage lives: no copy waits for the GPU */
 	unsigned slot; /* of the ring */
 	bool shown;
 	struct hud_view view; /* while it is shown */
@@ -100,6 +104,7 @@ static void attribute(unsigned vao, unsigned index, int size, size_t offset, uns
 
 static void create_buffers(struct hud_stage *s)
 {
+	const GLbitfield access = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
 	struct hud_vertex all[BOX_VERTICES + CONE_VERTICES];
 
 	make_box(all);
@@ -107,8 +112,8 @@ static void create_buffers(struct hud_stage *s)
 	glCreateBuffers(1, &s->vertices);
 	glNamedBufferStorage(s->vertices, sizeof all, all, 0);
 	glCreateBuffers(1, &s->instances);
-	glNamedBufferStorage(s->instances, (GLsizeiptr)RING * MOST * (GLsizeiptr)sizeof(struct hud_instance), NULL,
-			     GL_DYNAMIC_STORAGE_BIT);
+	glNamedBufferStorage(s->instances, INSTANCE_BYTES, NULL, access);
+	s->mapped = glMapNamedBufferRange(s->instances, 0, INSTANCE_BYTES, access);
 	glCreateVertexArrays(1, &s->vao);
 	glVertexArrayVertexBuffer(s->vao, 0, s->vertices, 0, sizeof(struct hud_vertex));
 	attribute(s->vao, 0, 3, offsetof(struct hud_vertex, position), 0);
@@ -130,6 +135,10 @@ int hud_create(struct hud_stage **out)
 	result = program_create_graphics(&s->program, "hud.vert", NULL, "hud.frag", NULL);
 	if (result == GR_OK)
 		create_buffers(s);
+	if (result == GR_OK && !s->mapped) {
+		gr_error("the HUD's parts cannot be mapped");
+		result = GR_ERR_GL;
+	}
 	if (result != GR_OK)
 		hud_destroy(&s);
 	*out = s;
@@ -142,6 +151,8 @@ void hud_destroy(struct hud_stage **stage)
 
 	if (!s)
 		return;
+	if (s->mapped)
+		glUnmapNamedBuffer(s->instances);
 	glDeleteVertexArrays(1, &s->vao);
 	glDeleteBuffers(1, &s->vertices);
 	glDeleteBuffers(1, &s->instances);
@@ -248,16 +259,14 @@ static size_t arrange(const struct hud_view *view, const vec3 eye, struct hud_pa
 
 static size_t upload(struct hud_stage *s, const vec3 eye, struct hud_part parts[MOST])
 {
-	struct hud_instance instances[MOST];
-	const size_t count = arrange(&s->view, eye, parts);
-	const GLintptr at = (GLintptr)(s->slot * MOST * sizeof *instances);
+	const size_t count = arrange(&s->view, eye, parts), first = (size_t)s->slot * MOST;
+	struct hud_instance *instances = s->mapped + first;
 
 	for (size_t i = 0; i < count; i++) {
 		memcpy(instances[i].T_room_part, parts[i].T_room_part, sizeof instances[i].T_room_part);
 		memcpy(instances[i].color, parts[i].color, sizeof instances[i].color);
 	}
-	glNamedBufferSubData(s->instances, at, (GLsizeiptr)(count * sizeof *instances), instances);
-	glVertexArrayVertexBuffer(s->vao, 1, s->instances, at, sizeof *instances);
+	glVertexArrayVertexBuffer(s->vao, 1, s->instances, (GLintptr)(first * sizeof *instances), sizeof *instances);
 	s->slot = (s->slot + 1) % RING;
 	return count;
 }
