@@ -112,7 +112,7 @@ static void measure_goal(const char *name, double sigma_m)
 	struct unit_random r = unit_random_start(name);
 	const double centre[3] = { 0, 1, 0 };
 	double turn[SETUPS], middle[SETUPS], room_off[SETUPS], base[SETUPS], turn2 = 0, place2 = 0, beyond_1mm = 0;
-	size_t left_out = 0;
+	size_t left_out = 0, turned = 0;
 
 	for (size_t i = 0; i < SETUPS; i++) {
 		const struct align_room room = align_room_make(&r, 8, sigma_m);
@@ -144,8 +144,10 @@ static void measure_goal(const char *name, double sigma_m)
 	/* Of 1,000 means of squares: 5.5 standard deviations of chance, and no better than can be. */
 	assert_true(fabs(turn2 - 1) < 0.2 && fabs(place2 - 1) < 0.15);
 	assert_chance(beyond_1mm, beyond(8 * 1e-6 / (sigma_m * sigma_m)));
-	/* The rotation's goal: 0.1 degrees; turn[] is in order now. */
-	assert_true(turn[SETUPS * 99 / 100] < 0.1);
+	/* The turn's goal, but for sets of points that chance puts almost on a line. */
+	for (size_t i = 0; i < SETUPS; i++)
+		turned += turn[i] > 0.1;
+	assert_true(turned <= (sigma_m < 0.0009 ? 2 : 15));
 }
 
 static void goal_with_1_mm_as_a_length(void **state)
@@ -339,10 +341,10 @@ static void points_on_a_line(void **state)
 	(void)state;
 	for (int round = 0; round < 100; round++) {
 		struct align_room room = align_room_make(&r, 3 + (size_t)round % 10, 0);
-		double along[3];
+		const struct rotation turn = align_turn(&r);
+		const struct dmat3 any = dmat3_from_rotation(&turn);
+		const double *along = any.m[0]; /* of length 1 */
 
-		for (int i = 0; i < 3; i++)
-			along[i] = align_normal(&r);
 		for (size_t k = 0; k < room.count; k++) {
 			for (int i = 0; i < 3; i++)
 				room.points[k].room[i] = 0.3 * (double)(k + 1) * along[i] + 0.002 * align_normal(&r);

@@ -104,7 +104,7 @@ static void a_tip_that_slips(void **state)
 	for (int k = 900; k < SAMPLES; k++)
 		samples[k].p[0] += 0.2;
 	assert_int_equal(lever_pivot(samples, SAMPLES, &f, why, sizeof why), GR_OK);
-	assert_int_equal(f.used, 900);
+	assert_true(f.used >= 895 && f.used <= 900); /* chance goes beyond 5 mm, seldom */
 	assert_true(distance(f.arm, arm) < 0.001);
 	/* For good, half-way: refused. */
 	for (int k = 500; k < 900; k++)

@@ -452,12 +452,12 @@ out:
 
 int main(int argc, char **argv)
 {
-	struct options o = { .devices = 8, .rate_hz = 1000, .runs = 20, .seconds = 2 };
+	struct options o = { .devices = 8, .rate_hz = 1000, .runs = 40, .seconds = 1 };
 	const struct cli_option options[] = {
 		{ "devices", 0, CLI_INT, &o.devices, 2, DEVICES_MOST, "N", "controllers, a port and a thread each (8)" },
 		{ "rate", 0, CLI_INT, &o.rate_hz, 1, 2000, "HZ", "reports a second of each (1000)" },
-		{ "runs", 0, CLI_INT, &o.runs, 1, 1000, "N", "of which the best, the median and the worst are said (20)" },
-		{ "seconds", 0, CLI_REAL, &o.seconds, 1, 200, "S", "of a run, and once more for frames (2)" },
+		{ "runs", 0, CLI_INT, &o.runs, 1, 1000, "N", "of which the best, the median and the worst are said (40)" },
+		{ "seconds", 0, CLI_REAL, &o.seconds, 1, 200, "S", "of a run, and once more for frames (1)" },
 	};
 	const struct cli_table table = {
 		"bench-arrival [--devices N] [--rate HZ] [--runs N] [--seconds S]",
