@@ -296,7 +296,7 @@ static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 	/* Nodes ask all masters. */
 	if (fdp_standby_role(m->standby) == FDP_ROLE_FOLLOWS)
 		return;
-	m->from = from;
+	m->from = len > FDP_KIND_AT && bytes[FDP_KIND_AT] == FDP_JOIN ? from : NULL;
 	m->heard_ns = now_ns;
 	fdp_master_arrived(m->fdp, arrived_ns);
 	node = fdp_master_receive(m->fdp, bytes, len, now_ns, &fresh);
@@ -305,7 +305,10 @@ static void on_datagram(void *ctx, const uint8_t *bytes, size_t len,
 		note_dropped(m, node, bytes, len, from, now_ns);
 		return;
 	}
-	/* Whoever sends a recording again must not have what is for the node. */
+	/*
+	 * Whoever sends again what he heard must not have what is for the node: if the node's own was
+	 * lost, his copy is the first. So only a JOIN teaches, which the node repeats until it is in.
+	 */
 	if (fresh)
 		net_learn(m->net, node, from);
 	if (node >= (int)m->params.layout->node_count)
@@ -384,8 +387,7 @@ static void on_second(void *ctx, int64_t now_ns)
 			      m->frame, m->frame - m->logged_frame, live, all);
 	m->logged_frame = m->frame;
 	log_send_failures(m, now_ns);
-	if (master_rules(m))
-		master_save(m);
+	master_save(m);
 	if (m->recorder)
 		recorder_watch(m->recorder);
 	loop_timer_set(m->loop, m->second_timer, now_ns + GR_NS_PER_S);
@@ -494,8 +496,7 @@ void master_leave(struct master *master)
 	if (master->left)
 		return;
 	master->left = true;
-	if (master_rules(master))
-		master_save(master);
+	master_save(master);
 	if (fdp_standby_role(master->standby) != FDP_ROLE_FOLLOWS)
 		fdp_master_leave(master->fdp, gr_clock_now(&gr_clock_monotonic));
 	net_flush(master->net);

@@ -44,7 +44,7 @@ static void fill_session(const struct master *m, struct record_session *s)
 		.table_hash = param_table_hash(),
 		.wall_ns = (int64_t)wall.tv_sec * GR_NS_PER_S + wall.tv_nsec,
 		.start_ns = gr_clock_now(&gr_clock_monotonic),
-		.zero_ns = m->start_ns - (m->params.live ? m->params.live->base_ns : 0),
+		.zero_ns = m->params.live ? m->params.live->start_ns - m->params.live->base_ns : m->start_ns,
 		.frame_hz = layout->rates.frame_hz,
 	};
 	memcpy(s->layout_hash, m->params.contents.layout_hash, sizeof s->layout_hash);

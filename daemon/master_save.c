@@ -1,5 +1,5 @@
 /* What this master leaves to its successor, and what it has from the one before. */
-#include "daemon/master.h"
+#include "daemon/master_private.h"
 
 #include "base/clock.h"
 #include "base/result.h"
@@ -42,14 +42,31 @@ void master_resume(struct master *m, const char *path)
 		  (double)(real_ns - saved.saved_ns) * 1e-9);
 }
 
+/* Who follows leaves what it follows: it may be the first to start again when all have stopped. */
+static uint64_t take_followed(struct master *m)
+{
+	uint64_t frame, time_ns;
+	const struct param_state *followed = fdp_standby_state(m->standby, &frame, NULL);
+
+	if (frame == 0 || frame == m->saved_frame)
+		return 0;
+	memcpy(&time_ns, param_get(followed, PARAM_FRAME_TIME), sizeof time_ns);
+	master_state_adopt(&m->params.live->scene_state, followed);
+	m->params.live->last_time_ns = (int64_t)time_ns;
+	return frame;
+}
+
 void master_save(struct master *m)
 {
-	struct saved_state saved = { .saved_ns = real_time(), .frame = m->frame };
+	struct saved_state saved = { .saved_ns = real_time() };
 	uint8_t bytes[SAVED_STATE_BYTES];
 
-	if (!m->keeper || m->frame == 0 || m->frame == m->saved_frame)
+	if (!m->keeper)
 		return;
-	m->saved_frame = m->frame;
+	saved.frame = master_rules(m) ? m->frame : take_followed(m);
+	if (saved.frame == 0 || saved.frame == m->saved_frame)
+		return;
+	m->saved_frame = saved.frame;
 	saved.time_ns = m->params.live->last_time_ns;
 	memcpy(saved.layout_hash, m->params.contents.layout_hash, sizeof saved.layout_hash);
 	memcpy(saved.scene_hash, m->params.contents.scene_hash, sizeof saved.scene_hash);

@@ -230,10 +230,9 @@ int fdp_master_chain(struct fdp_master *master, uint64_t previous_frame, uint64_
  * A datagram that arrived. Returns the node it is authentically from (>= 0),
  * or a negative result; everything bad is counted and dropped.
  *
- * *out_fresh (may be NULL): it is no recording, for it passed the window of its
- * session or echoed a challenge; only then does its source address say where
- * the node is. The first JOIN of a node, which anybody may have recorded, is
- * answered and not fresh.
+ * *out_fresh (may be NULL): it is a JOIN that echoes our challenge and came the first
+ * time: its source address says where the node is. Of anything else that may be a copy
+ * by who listens, of what was lost on its way.
  */
 int fdp_master_receive(struct fdp_master *master, const uint8_t *bytes, size_t len, int64_t now_ns,
 		       bool *out_fresh);

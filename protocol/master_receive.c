@@ -257,7 +257,6 @@ static enum fdp_verdict take(struct fdp_master *m, const struct fdp_header *h, c
 		return FDP_BAD_SESSION;
 	if (!fdp_replay_take(&peer->window, h->sequence))
 		return FDP_BAD_REPLAY;
-	*fresh = true;
 	peer->status.last_heard_ns = now_ns;
 	peer->status.hears_group = h->group;
 	if (!fdp_peer_present(peer->state)) {

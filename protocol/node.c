@@ -161,7 +161,7 @@ static void enter_session(struct fdp_node *n, const struct fdp_header *h, const 
 	n->to = (int)n->master;
 	n->highest = session;
 	n->guards = false;
-	n->call_session = 0;
+	fdp_node_forget_calls(n);
 	n->gate.session = n->out.session = session;
 	fdp_key_to_nodes(n->params.key, session, w->master_nonce, n->key_to_nodes[i]);
 	fdp_key_to_master(n->params.key, session, n->params.index, w->master_nonce, w->nonce,
@@ -289,7 +289,9 @@ static enum fdp_verdict in_session(struct fdp_node *n, const struct fdp_header *
 		fdp_node_ask_again(n, FDP_NODE_MASTER_LEFT, "the master goes");
 		/* Its successor needs a moment. */
 		n->asked = true;
-		n->asked_ns = n->hinted_ns = now_ns;
+		n->asked_ns = now_ns;
+		for (unsigned i = 0; i < FDP_MAX_MASTERS; i++)
+			n->calls[i].hinted_ns = now_ns;
 		return FDP_GOOD;
 	default:
 		return FDP_BAD_FORMAT;

@@ -83,7 +83,7 @@ void fdp_node_prove_highest(struct fdp_node *n, const struct fdp_header *h,
 	    (n->proved_ns && now_ns - n->proved_ns < n->params.join_ns / 4))
 		return;
 	n->proved_ns = now_ns;
-	n->hinted_ns = 0; /* it will call at once */
+	n->calls[FDP_SENDER_MASTER - h->sender].hinted_ns = 0; /* it will call at once */
 	fdp_node_send_join(n, (int)(FDP_SENDER_MASTER - h->sender), h->session, n->nonce,
 			   w->challenge);
 }
@@ -96,46 +96,68 @@ void fdp_node_prove_highest(struct fdp_node *n, const struct fdp_header *h,
 enum fdp_verdict fdp_node_on_beacon(struct fdp_node *n, const struct fdp_header *h,
 				    const uint8_t *body, int64_t now_ns)
 {
+	struct fdp_node_call *call;
+
 	if (!h->session || fdp_beacon_decode(body, h->payload_len))
 		return FDP_BAD_FORMAT;
 	/* Who is asking anyway need not be told to, but of a session that replaces the last. */
 	if (h->session == n->gate.session ||
 	    (!fdp_node_in_session(n) && (!n->highest || h->session <= n->highest)))
 		return FDP_GOOD;
-	if (n->call_session > h->session && now_ns - n->call_heard_ns < CALL_KEPT_NS)
+	call = &n->calls[FDP_SENDER_MASTER - h->sender];
+	if (call->session > h->session && now_ns - call->heard_ns < CALL_KEPT_NS)
 		return FDP_GOOD;
-	n->call_session = h->session;
-	n->call_heard_ns = now_ns;
-	n->call_master = FDP_SENDER_MASTER - (unsigned)h->sender;
+	call->session = h->session;
+	call->heard_ns = now_ns;
 	return FDP_GOOD;
 }
 
-/* When the call that we have heard may be answered; INT64_MAX: there is none. */
-int64_t fdp_node_call_at(const struct fdp_node *n)
+void fdp_node_forget_calls(struct fdp_node *n)
 {
-	const bool several = n->params.masters > 1, below = n->call_session < n->highest;
+	for (unsigned i = 0; i < FDP_MAX_MASTERS; i++)
+		n->calls[i].session = 0;
+}
+
+static int64_t call_at(const struct fdp_node *n, const struct fdp_node_call *call)
+{
+	const bool several = n->params.masters > 1, below = call->session < n->highest;
 	const int64_t silence_ns = several && below ? ORPHANED_NS : n->params.call_ns;
 	int64_t at = 0;
 
-	if (!n->call_session)
+	if (!call->session)
 		return INT64_MAX;
-	if (n->hinted_ns)
-		at = n->hinted_ns + (several && !below ? CALL_AGAIN_NS : n->params.join_ns);
+	if (call->hinted_ns)
+		at = call->hinted_ns + (several && !below ? CALL_AGAIN_NS : n->params.join_ns);
 	if (fdp_node_in_session(n) && n->heard_ns + silence_ns > at)
 		at = n->heard_ns + silence_ns;
 	return at;
 }
 
+/* When a call that we have heard may be answered; INT64_MAX: there is none. */
+int64_t fdp_node_call_at(const struct fdp_node *n)
+{
+	int64_t at = INT64_MAX;
+
+	for (unsigned i = 0; i < FDP_MAX_MASTERS; i++)
+		if (call_at(n, &n->calls[i]) < at)
+			at = call_at(n, &n->calls[i]);
+	return at;
+}
+
 void fdp_node_serve_call(struct fdp_node *n, int64_t now_ns)
 {
-	if (n->call_session &&
-	    (n->call_session == n->gate.session || now_ns - n->call_heard_ns > CALL_KEPT_NS))
-		n->call_session = 0;
-	if (now_ns < fdp_node_call_at(n))
-		return;
-	n->call_session = 0;
-	n->hinted_ns = now_ns;
-	fdp_node_send_join(n, (int)n->call_master, 0, n->nonce, NULL);
+	for (unsigned i = 0; i < FDP_MAX_MASTERS; i++) {
+		struct fdp_node_call *call = &n->calls[i];
+
+		if (call->session &&
+		    (call->session == n->gate.session || now_ns - call->heard_ns > CALL_KEPT_NS))
+			call->session = 0;
+		if (now_ns < call_at(n, call))
+			continue;
+		call->session = 0;
+		call->hinted_ns = now_ns;
+		fdp_node_send_join(n, (int)i, 0, n->nonce, NULL);
+	}
 }
 
 void fdp_node_guard(struct fdp_node *n, uint64_t session)
@@ -144,7 +166,7 @@ void fdp_node_guard(struct fdp_node *n, uint64_t session)
 	n->to = fdp_node_whom_to_ask(n);
 	n->status = FDP_NODE_ASKING;
 	n->guards = true;
-	n->call_session = 0;
+	fdp_node_forget_calls(n);
 	if (session > n->highest)
 		n->highest = session;
 	randombytes_buf(n->nonce, sizeof n->nonce);

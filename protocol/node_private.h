@@ -63,14 +63,17 @@ struct fdp_node {
 	uint64_t shown;   /* frame that we were told to show, in any session */
 	bool guards;      /* see fdp_node_guard */
 	int to;           /* where what is sent goes: a master, or FDP_TO_ALL */
-	/* The highest session that a BEACON spoke of, since when, and by whom; 0: none that is of use. */
-	uint64_t call_session;
-	int64_t call_heard_ns;
-	unsigned call_master;
+	/*
+	 * Of each master that a BEACON spoke for: the highest session, 0: none that is of use, when
+	 * it did, and when a JOIN was last sent for it. One may be a recording: none hides another's.
+	 */
+	struct fdp_node_call {
+		uint64_t session;
+		int64_t heard_ns, hinted_ns;
+	} calls[FDP_MAX_MASTERS];
 	int64_t proved_ns; /* JOIN last sent to show a master what we have been in */
 	int64_t asked_ns; /* JOIN last sent */
 	bool asked;
-	int64_t hinted_ns; /* JOIN last sent because of another session's beacon */
 	int64_t heard_ns; /* master, in this session */
 	int64_t group_heard_ns; /* by the group; 0: not in this session */
 	int64_t retry_ns; /* the master's probe interval */
@@ -152,6 +155,8 @@ enum fdp_verdict fdp_node_on_beacon(struct fdp_node *n, const struct fdp_header 
 				    const uint8_t *body, int64_t now_ns);
 /* When a call that was heard may be answered, INT64_MAX: there is none; and answers it then. */
 int64_t fdp_node_call_at(const struct fdp_node *n);
+/* No call that was heard is of use any more. */
+void fdp_node_forget_calls(struct fdp_node *n);
 void fdp_node_serve_call(struct fdp_node *n, int64_t now_ns);
 /* Our bit in a set of nodes. */
 static inline bool fdp_node_in(const struct fdp_node *n, uint64_t set)

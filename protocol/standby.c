@@ -27,6 +27,7 @@ struct fdp_standby {
 	struct param_state *state;  /* followed */
 	uint64_t frame, hash, live; /* whose it is, and who counted in it */
 	int64_t frame_ns;
+	bool anew;         /* the ear has joined since: whatever it holds first is newer */
 	int64_t alive_ns; /* when there last was reason to believe that somebody rules */
 	bool found;	  /* somebody did */
 	int64_t began_ns, called_ns, took_ns; /* 0: it did not call */
@@ -165,13 +166,14 @@ static void keep_state(struct fdp_standby *s, int64_t arrived_ns)
 	uint64_t live;
 	const uint64_t frame = fdp_node_applied(s->ear, &live);
 
-	if (!frame || (frame == s->frame && fdp_node_hash(s->ear) == s->hash && s->frame_ns))
+	if (!frame || (frame == s->frame && fdp_node_hash(s->ear) == s->hash && !s->anew))
 		return;
 	param_state_copy(s->state, fdp_node_params_state(s->ear));
 	s->frame = frame;
 	s->hash = fdp_node_hash(s->ear);
 	s->live = live;
 	s->frame_ns = arrived_ns;
+	s->anew = false;
 }
 
 void fdp_standby_counters(const struct fdp_standby *s, struct fdp_counters *out)
@@ -322,7 +324,7 @@ static enum fdp_standby_change join(struct fdp_standby *s, int64_t now_ns)
 	/* What comes is its room, not what we had. */
 	if (ruled)
 		s->frame = 0;
-	s->frame_ns = 0;
+	s->anew = true;
 	return ruled ? FDP_STANDBY_YIELDS : FDP_STANDBY_FOLLOWS;
 }
 

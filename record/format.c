@@ -175,7 +175,8 @@ int record_session_decode(const uint8_t *bytes, size_t len, struct record_sessio
 	}
 	out->wall_ns = read_time(&r);
 	out->start_ns = read_time(&r);
-	out->zero_ns = read_time(&r);
+	/* Before the machine started, where scene time goes on from another master's. */
+	out->zero_ns = (int64_t)gr_read_u64(&r);
 	out->frame_hz = gr_read_f32(&r);
 	read_text(&r, out->grotto, sizeof out->grotto);
 	read_text(&r, out->layout, sizeof out->layout);

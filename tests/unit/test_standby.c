@@ -407,6 +407,66 @@ static void claims(void **state)
 	room_finish(&r);
 }
 
+/*
+ * Recordings of a life before, when epochs had come further: whoever throws them in holds no key,
+ * and holds no takeover up.
+ */
+static void old_calls(void **state)
+{
+	uint8_t bytes[FDP_DATAGRAM_MIN];
+	struct room r;
+
+	(void)state;
+	for (unsigned sender = 0; sender < ROOM_MASTERS; sender++) {
+		int64_t before;
+
+		room_start(&r, 12 + sender, 20);
+		before = r.now_ns;
+		r.watched_session = fdp_master_session(r.masters[0].fdp);
+		r.first_swap_ns = 0;
+		room_kill_master(&r, 0);
+		for (int i = 0; i < 1000; i++) {
+			const size_t len = forge(bytes, sender, FDP_BEACON, r.watched_session + (UINT64_C(50) << 32), true);
+
+			for (int to = 0; to < ROOM_NODES; to++)
+				room_inject(&r, to, bytes, len);
+			room_run(&r, ROOM_MS);
+		}
+		room_run(&r, 3000 * ROOM_MS);
+		printf("# old calls of master %u: takeover after %.2f frames\n", sender,
+		       (double)(r.first_swap_ns - before) / (double)ROOM_PERIOD_NS);
+		assert_one_room(&r, 1);
+		assert_true(r.first_swap_ns - before < ROOM_TAKEOVER * ROOM_PERIOD_NS);
+		room_finish(&r);
+	}
+}
+
+/* The active master dies when a standby has just found it again, and has no state of it yet. */
+static void dies_before_the_snapshot(void **state)
+{
+	struct room r;
+	uint64_t frame;
+
+	(void)state;
+	room_start(&r, 15, 20);
+	room_kill_master(&r, 2);
+	room_cut(&r, ROOM_NODES, ROOM_NODES + 1, true);
+	room_run(&r, 3000 * ROOM_MS);
+	assert_int_equal(fdp_standby_follows(r.masters[1].standby), -1);
+	room_cut(&r, ROOM_NODES, ROOM_NODES + 1, false);
+	for (int i = 0; i < 100000 && fdp_standby_follows(r.masters[1].standby) < 0; i++)
+		room_run(&r, ROOM_MS / 50);
+	assert_int_equal(fdp_standby_follows(r.masters[1].standby), 0);
+	frame = r.masters[0].frame;
+	room_kill_master(&r, 0);
+	room_run(&r, 1000 * ROOM_MS);
+	assert_int_equal(room_ruler(&r), 1);
+	printf("# died in frame %llu, a second later frame %llu\n", (unsigned long long)frame,
+	       (unsigned long long)r.masters[1].frame);
+	assert_true(r.masters[1].frame < frame + 120);
+	room_finish(&r);
+}
+
 /* Deaths, hangs, cuts and returns at random, with loss; then all is mended. */
 static void turmoil(void **state)
 {
@@ -468,6 +528,8 @@ int main(void)
 		cmocka_unit_test(all_masters_die),
 		cmocka_unit_test(partition),	   cmocka_unit_test(two_standbys),
 		cmocka_unit_test(master_leaves),   cmocka_unit_test(claims),
+		cmocka_unit_test(dies_before_the_snapshot),
+		cmocka_unit_test(old_calls),
 		cmocka_unit_test(turmoil),
 	};
 
