@@ -12,6 +12,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 struct bake_options {
 	const char *out;
@@ -45,6 +46,25 @@ static bool show(void *ctx, const char *stage, double done, double seconds_left)
 
 	progress_show(&run->progress, done, seconds_left, stage);
 	return !progress_asked_to_end();
+}
+
+/* A file that is there and none of baked surfels, such as the scene itself. */
+static bool is_something_else(const char *path)
+{
+	static const char magic[8] = { 'G', 'R', 'S', 'U', 'R', 'F', 'E', 'L' };
+	char bytes[sizeof magic];
+	struct stat status;
+	FILE *file;
+	size_t n;
+
+	if (stat(path, &status) != 0 || !S_ISREG(status.st_mode) || status.st_size == 0)
+		return false;
+	file = fopen(path, "rb");
+	if (!file)
+		return false;
+	n = fread(bytes, 1, sizeof bytes, file);
+	fclose(file);
+	return n != sizeof magic || memcmp(bytes, magic, sizeof magic) != 0;
 }
 
 /* gi.method = "auto": as a node of this machine, so that it finds what it needs. */
@@ -142,6 +162,11 @@ int command_bake(int argc, char **argv)
 	}
 	if (words != 1) {
 		fprintf(stderr, "grotto bake: needs one SCENE\n");
+		return GR_EXIT_CONFIG;
+	}
+	if (o.out && is_something_else(o.out)) {
+		fprintf(stderr, "grotto bake: %s is not a file of baked surfels, and is not replaced by one\n",
+			o.out);
 		return GR_EXIT_CONFIG;
 	}
 	result = load_scene(argv[1], &run.file, &run.scene);

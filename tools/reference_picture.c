@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/result.h"
 #include "renderer/tone/encode.h"
+#include "renderer/trace/sampler.h"
 #include "tools/say.h"
 
 #include <errno.h>
@@ -146,9 +147,13 @@ int reference_picture(struct reference_run *run)
 			o->resume);
 		result = GR_ERR_CONFIG;
 	}
-	if (result == GR_NOTHING && film.samples == 0)
+	/* one set has no standard error, and the file would say 0 */
+	if (result == GR_NOTHING && film.samples < 2 * SAMPLER_SET) {
 		fprintf(stderr, "grotto reference: ended before every pixel had its first samples; "
 				"nothing is written\n");
+		if (o->resume && film.samples > 0)
+			reference_film_save(&film, o->resume);
+	}
 	else if (result == GR_OK || result == GR_NOTHING)
 		result = write_files(run, &film);
 	if (result == GR_OK)

@@ -241,9 +241,12 @@ int reference_points(struct reference_run *run)
 					      points.count, &nonfinite);
 		progress_end(&run->progress);
 	}
-	if (result == GR_NOTHING)
+	if (result == GR_NOTHING && (points.count == 0 || isnan(points.at[0].total[0])))
+		fprintf(stderr, "grotto reference: ended before every point had its first samples; "
+				"nothing is written\n");
+	else if (result == GR_NOTHING)
 		fprintf(stderr, "grotto reference: ended early; %s has what there is\n", o->points_out);
-	if (result == GR_OK || (result == GR_NOTHING && points.count > 0))
+	if (result == GR_OK || (result == GR_NOTHING && points.count > 0 && !isnan(points.at[0].total[0])))
 		result = write_points(o->points_out, &points);
 	if (result == GR_OK)
 		printf("%s: %zu points\n", o->points_out, points.count);

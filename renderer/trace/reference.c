@@ -3,7 +3,9 @@
 #include "base/result.h"
 #include "renderer/trace/estimate.h"
 #include "renderer/trace/reference_private.h"
+#include "renderer/trace/sampler.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -197,10 +199,19 @@ static void fill_points(const struct estimate_sums *sums, struct reference_point
 	for (size_t i = 0; i < sums->items; i++) {
 		for (size_t c = 0; c < 3; c++) {
 			size_t at = 3 * i + c;
-			double n = sums->samples > 0 ? sums->samples : 1;
+			double n = sums->samples;
 
+			if (sums->samples == 0) { /* nothing is known yet: not 0 */
+				points[i].total[c] = points[i].indirect[c] = NAN;
+				points[i].total_error[c] = points[i].indirect_error[c] = NAN;
+				continue;
+			}
 			points[i].total[c] = sums->total[at] / n;
 			points[i].indirect[c] = sums->indirect[at] / n;
+			if (sums->samples < 2 * SAMPLER_SET) { /* one set has no error: not 0 */
+				points[i].total_error[c] = points[i].indirect_error[c] = NAN;
+				continue;
+			}
 			points[i].total_error[c] =
 				estimate_error(sums->total[at], sums->squares[at], sums->samples);
 			points[i].indirect_error[c] = estimate_error(

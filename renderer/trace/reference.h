@@ -136,7 +136,7 @@ int reference_film_parse(struct reference_film *film, const uint8_t *bytes, size
 struct reference_point {
 	float position[3], normal[3]; /* unit; rays start a little off the surface */
 	double total[3], indirect[3]; /* W/m^2 per band; indirect: all that was reflected at least once */
-	double total_error[3], indirect_error[3]; /* standard errors */
+	double total_error[3], indirect_error[3]; /* standard errors, NaN before two sets; all NaN before the first */
 };
 /* As reference_render; positions beyond RAYS_MOST are out of range. Samples of a point depend on the seed and its place in the array. */
 int reference_irradiance(struct reference *reference, const struct reference_params *params,

@@ -58,4 +58,10 @@ case $said in
 esac
 said=$("$grotto" bake "$scene" --gpu 64 --out "$work/gpu.surfels" 2>&1)
 [ $? != 0 ] && [ ! -e "$work/gpu.surfels" ] || fail "a GPU that is not there: $said"
+
+# What is no file of surfels is not replaced by one.
+before=$(cksum <"$work/named.scene")
+said=$("$grotto" bake "$work/named.scene" --out "$work/named.scene" 2>&1)
+[ $? = 2 ] || fail "over the scene: $said"
+[ "$(cksum <"$work/named.scene")" = "$before" ] || fail "over the scene: it is gone"
 exit $failed

@@ -56,6 +56,14 @@ printf 'nan,0,1,0,1,0\n' >"$work/bad.csv"
 refused "bad.csv:1: not a point" --points "$work/bad.csv" --points-out "$work/x.csv"
 [ ! -e "$work/x.exr" ] && [ ! -e "$work/x.csv" ] || fail "a refused command wrote something"
 
+refused "files of their own" -n 32 --resume "$work/one" -o "$work/one"
+refused "files of their own" -n 32 -o "$work/one" --png "$work/one"
+
+# Ended before a standard error is known: no zeros that would pass for light.
+awk 'BEGIN { for (i = 0; i < 200000; i++) print 1 + i % 300 / 100 ",0,1,0,1,0" }' >"$work/many.csv"
+timeout -s INT 1 "$grotto" reference "$scene" -j 1 -n 4096 --points "$work/many.csv" --points-out "$work/many.out" 2>/dev/null
+[ ! -e "$work/many.out" ] || fail "ended early, and wrote $(sed -n 2p "$work/many.out")"
+
 # A pipe is not replaced by a file, nor removed.
 mkfifo "$work/pipe"
 timeout 60 "$grotto" bake "$scene" --out "$work/pipe" >"$work/bake.log" 2>&1

@@ -113,7 +113,7 @@ static void throw_noise(struct forger *f)
 	for (size_t i = 0; i < len; i++)
 		bytes[i] = (uint8_t)unit_random_u32(&f->random);
 	if (len > 5 && dice(f, 2))
-		memcpy(bytes, "GFDP\3", 5);
+		memcpy(bytes, (const uint8_t[]){ 'G', 'F', 'D', 'P', FDP_VERSION }, 5);
 	throw_at(f, NOISE, any_port(f), bytes, len);
 }
 

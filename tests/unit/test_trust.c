@@ -145,7 +145,7 @@ static void make_noise(struct attack *a, enum input kind)
 	fill(a, 0, a->len);
 	if (kind == NOISE || a->len < FDP_HEADER_BYTES)
 		return;
-	memcpy(a->bytes, "GFDP\3", 5);
+	memcpy(a->bytes, (const uint8_t[]){ 'G', 'F', 'D', 'P', FDP_VERSION }, 5);
 	a->bytes[5] = (uint8_t)(1 + a->bytes[5] % (FDP_KINDS - 1));
 	a->bytes[6] &= 1;
 	a->bytes[7] = 0;
