@@ -182,7 +182,7 @@ static void refusals(void **state)
 		"at most 1 comes back");
 	refused("environment = { kind = \"image\"; file = \"no.exr\"; };",
 		"no.exr: picture cannot be opened");
-	refused("environment = { kind = \"image\"; file = \"grey.brdf\"; };", "not a readable EXR");
+	refused("environment = { kind = \"image\"; file = \"grey.brdf\"; };", "neither OpenEXR nor a Radiance picture");
 }
 
 static void surroundings(void **state)
