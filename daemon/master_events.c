@@ -26,15 +26,18 @@ void master_node_gone(struct master *m, int node)
 		live_source_node_gone(m->params.live, (unsigned)node);
 }
 
+/* Recordings of two JOINs in turns can have a node refused without end: into the log and the record goes one a minute. */
 static void node_refused(struct master *m, const struct fdp_master_event *event, int64_t now_ns)
 {
 	struct gr_log_limit *limit = &m->refused_limit[event->node < 0 ? 0 : event->node % FDP_MAX_NODES];
 	uint64_t times;
 
 	m->refused++;
-	if (gr_log_limit(limit, now_ns, &times))
-		gr_error("node %s may not join: %s", master_node_name(m, event->node),
-			 event->reason ? event->reason : "no reason given");
+	if (!gr_log_limit(limit, now_ns, &times))
+		return;
+	recorder_event(m->recorder, now_ns, event);
+	gr_error("node %s may not join: %s", master_node_name(m, event->node),
+		 event->reason ? event->reason : "no reason given");
 }
 
 static void node_mismatch(struct master *m, const struct fdp_master_event *event, int64_t now_ns)
@@ -74,7 +77,8 @@ void master_on_event(void *ctx, const struct fdp_master_event *event)
 		master_role_event(m, event);
 		return;
 	}
-	recorder_event(m->recorder, now_ns, event);
+	if (event->kind != FDP_MASTER_REFUSED)
+		recorder_event(m->recorder, now_ns, event);
 	switch (event->kind) {
 	case FDP_MASTER_JOINED:
 		/* Counts from the next frame on. */

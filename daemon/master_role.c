@@ -70,6 +70,7 @@ void master_role_event(struct master *m, const struct fdp_master_event *event)
 {
 	const unsigned index = (unsigned)event->node - (unsigned)m->params.layout->node_count;
 	char name[FDP_NAME_BYTES];
+	uint64_t times;
 
 	switch (event->kind) {
 	case FDP_MASTER_OUTRANKED: fdp_standby_outranked(m->standby, event->theirs); break;
@@ -79,8 +80,10 @@ void master_role_event(struct master *m, const struct fdp_master_event *event)
 			  event->reason ? event->reason : "no reason given");
 		break;
 	case FDP_MASTER_REFUSED:
-		gr_error("%s may not follow: %s", master_name(index, name),
-			 event->reason ? event->reason : "no reason given");
+		if (gr_log_limit(&m->refused_limit[event->node % FDP_MAX_NODES],
+				 gr_clock_now(&gr_clock_monotonic), &times))
+			gr_error("%s may not follow: %s", master_name(index, name),
+				 event->reason ? event->reason : "no reason given");
 		break;
 	case FDP_MASTER_MISMATCH:
 		gr_error("%s holds another state at frame %" PRIu64 "; it gets a snapshot",

@@ -147,12 +147,14 @@ void recorder_frame(struct recorder *r, int64_t now_ns, const struct param_state
 
 	if (!runs(r))
 		return;
-	if (r->need_whole || frame->previous_frame == 0 || now_ns - r->whole_ns >= RECORDER_WHOLE_NS)
+	if (r->need_whole || frame->previous_frame == 0 || frame->previous_hash != r->last_hash ||
+	    now_ns - r->whole_ns >= RECORDER_WHOLE_NS)
 		entry.kind = RECORD_STATE;
 	len = param_delta_encode(state, entry.kind == RECORD_STATE ? 0 : frame->previous_frame, delta,
 				 sizeof delta);
 	entry.frame.delta = delta;
 	entry.frame.delta_len = len > 0 ? (size_t)len : 0;
+	r->last_hash = frame->hash;
 	r->need_whole = len < 0 || !record_writer_put(r->writer, &entry);
 	if (!r->need_whole && entry.kind == RECORD_STATE)
 		r->whole_ns = now_ns;

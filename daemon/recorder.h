@@ -21,6 +21,7 @@ struct recorder {
 	struct record_writer *writer;
 	char hint[512]; /* what the writer says when it may not write */
 	bool need_whole;
+	uint64_t last_hash; /* of the frame recorded last: what comes after another goes whole */
 	bool running; /* when last looked at */
 	int64_t whole_ns;
 	uint64_t shown[FDP_MAX_NODES]; /* last frame that it was said of */
