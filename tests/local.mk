@@ -20,6 +20,8 @@ include $(top_srcdir)/tests/doctor.mk
 include $(top_srcdir)/tests/packaging.mk
 
 # For scripts/check, which runs some kinds alone.
-.PHONY: list-tests
+.PHONY: list-tests list-programs
 list-tests:
 	@echo $(TESTS)
+list-programs:
+	@echo $(check_PROGRAMS)

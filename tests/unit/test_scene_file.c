@@ -307,6 +307,7 @@ static void check_round_trip(const char *text)
 		unit_diag_print(&diag);
 		fail_msg("%s", first);
 	}
+	gr_diag_finish(&diag);
 	assert_memory_equal(again->hash, file->hash, sizeof file->hash);
 	out = open_memstream(&second, &size);
 	assert_int_equal(scene_file_write(out, again), GR_OK);
