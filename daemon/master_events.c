@@ -22,7 +22,7 @@ void master_node_gone(struct master *m, int node)
 	m->members &= ~(UINT64_C(1) << node);
 	m->behind &= ~(UINT64_C(1) << node);
 	frame_stats_gone(&m->stats, (unsigned)node);
-	if (m->params.live && node >= 0)
+	if (m->params.live)
 		live_source_node_gone(m->params.live, (unsigned)node);
 }
 
