@@ -100,15 +100,19 @@ int hand_step(struct hand *hand, const struct master_input *input, struct master
 	      struct gr_pose *T_scene_room)
 {
 	const int64_t step_ns = input->step_ns < HAND_STEP_MOST_NS ? input->step_ns : HAND_STEP_MOST_NS;
-	const uint32_t new = input->buttons & ~hand->buttons;
+	uint32_t new = input->buttons & ~hand->buttons;
 	struct hand_moment now = { .input = input, .step_s = (float)((double)step_ns * 1e-9) };
 
 	if (!input_valid(input))
 		return GR_ERR_RANGE;
 	if (!input->wand.tracked) {
 		hand->drag.on = hand->flight.on = false;
+		hand->lost = true;
 		return GR_OK;
 	}
+	if (hand->lost) /* pressed while nobody saw it */
+		new = 0;
+	hand->lost = false;
 	hand->buttons = input->buttons;
 	hand->stale &= input->buttons;
 	if (hand_has(new, hand->bindings->next)) {

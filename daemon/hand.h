@@ -60,6 +60,7 @@ struct hand {
 	const struct scene_file *scene;
 	int torch; /* the lamp that lighting is about, -1: the scene has none */
 	uint32_t buttons; /* of the frame before */
+	bool lost;	  /* the wand was, in the frame before */
 	uint32_t stale;   /* of these, pressed for the layout before this one, and not let go since */
 	enum hand_mode mode;
 	bool quality;

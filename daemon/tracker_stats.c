@@ -36,18 +36,27 @@ void tracker_stats_tick(struct tracker_stats *s, int64_t now_ns)
 	}
 }
 
-void tracker_stats_heard(struct tracker_stats *s, int64_t arrived_ns)
+void tracker_stats_heard(struct tracker_stats *s, unsigned sensor, int64_t arrived_ns)
 {
-	const double gap_ms = (double)(arrived_ns - s->heard_ns) * 1e-6;
+	const double gap_ms = (double)(arrived_ns - s->round_ns) * 1e-6;
+	const uint32_t bit = UINT32_C(1) << sensor;
+	const bool first = !s->round;
 
+	s->heard++;
+	s->heard_ns = arrived_ns;
+	if (!first && !(s->round & bit)) {
+		s->round |= bit;
+		return;
+	}
+	s->round = bit;
+	s->round_ns = arrived_ns;
 	/* Welford (1962); the first arrival ever has none before it. */
-	if (s->heard++) {
+	if (!first) {
 		const double before = gap_ms - s->mean_ms;
 
 		s->mean_ms += before / (double)++s->window_heard;
 		s->squares_ms2 += before * (gap_ms - s->mean_ms);
 	}
-	s->heard_ns = arrived_ns;
 }
 
 void tracker_stats_sample(struct tracker_stats *s, enum track_body body, bool valid)

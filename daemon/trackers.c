@@ -156,7 +156,7 @@ static void poll_source(struct trackers *trackers, size_t i, int64_t now_ns, int
 		int n = track_poll(t->source, now_ns, samples, POLL_BATCH);
 
 		for (int k = 0; k < n; k++) {
-			tracker_stats_heard(&t->stats, monotonic_ns);
+			tracker_stats_heard(&t->stats, samples[k].body, monotonic_ns);
 			take(trackers, i, &samples[k], now_ns);
 		}
 		if (n < POLL_BATCH)
@@ -171,7 +171,7 @@ static void take_report(struct trackers *trackers, size_t i, const struct track_
 	struct tracker *t = &trackers->all[i];
 	struct track_sample sample;
 
-	tracker_stats_heard(&t->stats, report->arrived_ns);
+	tracker_stats_heard(&t->stats, report->sensor, report->arrived_ns);
 	if (report->has & TRACK_BATTERY)
 		t->stats.battery = report->battery;
 	for (size_t k = 0; k < t->of->binding_count; k++) {

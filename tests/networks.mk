@@ -30,12 +30,16 @@ tests_unit_test_vrpn_device_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
 EXTRA_DIST += \
 	tests/fuzz/fuzz_dtrack.c \
 	tests/fuzz/corpus/dtrack/every \
+	tests/fuzz/corpus/dtrack/refused \
 	tests/fuzz/corpus/dtrack/lost \
 	tests/fuzz/corpus/dtrack/midnight \
 	tests/fuzz/corpus/dtrack/numbers \
 	tests/fuzz/corpus/dtrack/twice \
 	tests/fuzz/fuzz_vrpn.c \
 	tests/fuzz/corpus/vrpn/datagrams \
+	tests/fuzz/corpus/vrpn/buttons \
+	tests/fuzz/corpus/vrpn/cookie \
+	tests/fuzz/corpus/vrpn/rests \
 	tests/fuzz/corpus/vrpn/faults \
 	tests/fuzz/corpus/vrpn/session
 

@@ -30,10 +30,17 @@ tests_unit_test_polhemus_life_LDADD = $(MOCK_LIBS)
 EXTRA_DIST += \
 	tests/fuzz/fuzz_polhemus.h tests/fuzz/fuzz_viper.c tests/fuzz/fuzz_liberty.c \
 	tests/fuzz/corpus/viper/joined \
+	tests/fuzz/corpus/viper/bytewise \
+	tests/fuzz/corpus/viper/lost \
+	tests/fuzz/corpus/viper/mode \
+	tests/fuzz/corpus/viper/rate \
 	tests/fuzz/corpus/viper/long \
 	tests/fuzz/corpus/viper/poses \
 	tests/fuzz/corpus/viper/replies \
 	tests/fuzz/corpus/liberty/joined \
+	tests/fuzz/corpus/liberty/bytewise \
+	tests/fuzz/corpus/liberty/short \
+	tests/fuzz/corpus/liberty/sizes \
 	tests/fuzz/corpus/liberty/poses \
 	tests/fuzz/corpus/liberty/text
 if FUZZERS

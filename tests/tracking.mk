@@ -76,6 +76,8 @@ tests_unit_test_filter_LDADD = $(TRACKING_LIBS) $(CMOCKA_LIBS)
 EXTRA_DIST += \
 	tests/fuzz/fuzz_hydra.c \
 	tests/fuzz/corpus/hydra/docked \
+	tests/fuzz/corpus/hydra/constants \
+	tests/fuzz/corpus/hydra/middle \
 	tests/fuzz/corpus/hydra/flips \
 	tests/fuzz/corpus/hydra/short \
 	tests/fuzz/fuzz_replay.c \

@@ -39,6 +39,8 @@ static int check_options(const struct options *o, int words)
 		return wrong("--scale is of the base, --pivot and --arm take it as the layout has it");
 	if (o->open && o->socket)
 		return wrong("--open asks no master; leave out --socket");
+	if (cli_same_file(o->keep, o->layout))
+		return wrong("--keep would write over the layout: give it a file of its own");
 	return GR_EXIT_OK;
 }
 

@@ -9,6 +9,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 void cli_help(const struct cli_table *table, FILE *out)
 {
@@ -197,4 +198,14 @@ enum cli_result cli_parse(const struct cli_table *table, int argc, char **argv,
 	}
 	*out_words = words;
 	return CLI_RUN;
+}
+
+bool cli_same_file(const char *a, const char *b)
+{
+	struct stat x, y;
+
+	if (!a || !b)
+		return false;
+	return strcmp(a, b) == 0 || (stat(a, &x) == 0 && stat(b, &y) == 0 && S_ISREG(x.st_mode) &&
+				     x.st_dev == y.st_dev && x.st_ino == y.st_ino);
 }

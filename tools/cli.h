@@ -7,6 +7,7 @@
 #ifndef GROTTO_TOOLS_CLI_H
 #define GROTTO_TOOLS_CLI_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 
@@ -46,5 +47,7 @@ enum cli_result { CLI_RUN, CLI_HELP, CLI_WRONG };
 enum cli_result cli_parse(const struct cli_table *table, int argc, char **argv,
 				  int *out_words);
 void cli_help(const struct cli_table *table, FILE *out);
+/* Whether two paths (NULL: none) name one regular file, by whatever links: to write one is to lose the other. */
+bool cli_same_file(const char *a, const char *b);
 
 #endif

@@ -104,16 +104,6 @@ static bool can_keep(const char *path)
 	return good;
 }
 
-static bool same(const char *a, const char *b)
-{
-	struct stat x, y;
-
-	if (!a || !b)
-		return false;
-	return strcmp(a, b) == 0 || (stat(a, &x) == 0 && stat(b, &y) == 0 && S_ISREG(x.st_mode) &&
-				     x.st_dev == y.st_dev && x.st_ino == y.st_ino);
-}
-
 /* false: said on stderr. */
 static bool sound(const struct reference_options *o, int words)
 {
@@ -133,7 +123,8 @@ static bool sound(const struct reference_options *o, int words)
 		fault = "--eye is left or right";
 	else if (o->resume && !o->out && !o->png)
 		fault = "--resume goes with a picture: --out or --png";
-	else if (same(o->resume, o->out) || same(o->resume, o->png) || same(o->out, o->png))
+	else if (cli_same_file(o->resume, o->out) || cli_same_file(o->resume, o->png) ||
+		 cli_same_file(o->out, o->png))
 		fault = "--resume, --out and --png are files of their own";
 	if (fault)
 		fprintf(stderr, "grotto reference: %s\n", fault);

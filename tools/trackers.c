@@ -224,6 +224,8 @@ static int check_options(struct options *o, int words)
 		wrong = "--open and --record need --layout FILE";
 	else if (o->open && o->socket)
 		wrong = "--open asks no master; leave out --socket";
+	else if (cli_same_file(o->record, o->layout))
+		wrong = "--record would write over the layout: give it a file of its own";
 	else if (o->socket && o->layout)
 		wrong = "give --socket PATH or --layout FILE, not both";
 	if (wrong)

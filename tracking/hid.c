@@ -12,13 +12,12 @@
 
 #define SLICE_MS 20
 
-/* hid_init is not thread safe; after it hid_enumerate and hid_open_path are. */
-static pthread_once_t once = PTHREAD_ONCE_INIT;
-
-static void init(void)
-{
-	(void)hid_init();
-}
+/*
+ * hidapi's hid_enumerate and hid_open_path free and set the text of its last
+ * error, which all threads share: one at a time. Once a device is open it has
+ * a text of its own.
+ */
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
 /* Printable ASCII of a wide string: a device may say anything. */
 static void narrow(char *to, size_t size, const wchar_t *from)
@@ -83,8 +82,9 @@ int track_hid_list(uint16_t vendor, uint16_t product, struct track_hid_node *out
 	struct hid_device_info *all;
 	int count = 0;
 
-	pthread_once(&once, init);
+	pthread_mutex_lock(&lock);
 	all = hid_enumerate(vendor, product);
+	pthread_mutex_unlock(&lock);
 	for (const struct hid_device_info *i = all; i; i = i->next) {
 		/* hidapi lists a node once for each of its usages. */
 		struct track_hid_node *node = i->path ? known(out, count, i->path) : NULL;
@@ -149,8 +149,9 @@ static enum track_state why_not(const struct track_hid_node *node, char *why, si
 enum track_state track_hid_open(const struct track_hid_node *node, hid_device **out, char *why,
 				size_t size)
 {
-	pthread_once(&once, init);
+	pthread_mutex_lock(&lock);
 	*out = hid_open_path(node->path);
+	pthread_mutex_unlock(&lock);
 	return *out ? TRACK_RUNNING : why_not(node, why, size);
 }
 

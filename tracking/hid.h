@@ -6,8 +6,8 @@
  * between short waits whether the thread is to end. What a driver waits for in
  * one go is at most TRACK_HID_WAIT_MS all the same.
  *
- * Thread: hidapi's functions about one device, one thread. track_hid_list may
- * be called from several threads.
+ * Thread: hidapi's functions about one device, one thread. track_hid_list and
+ * track_hid_open may be called from several threads.
  */
 #ifndef GROTTO_TRACKING_HID_H
 #define GROTTO_TRACKING_HID_H

@@ -11,6 +11,7 @@
 #define PRODUCT 0x0300
 #define LISTEN_MS 250 /* for a device that is in motion mode already: 60 reports' time */
 #define SWITCH_NS (5 * GR_NS_PER_S) /* that a mode switch may take */
+#define SILENCE_NS GR_NS_PER_S /* in motion mode it never rests: somebody has switched it */
 #define SERIAL_AT 216		    /* in a long feature report */
 #define SERIAL_LEN 17
 
@@ -21,7 +22,7 @@ struct hydra {
 	hid_device *reports, *control;
 	bool was_gamepad; /* when it was opened: it is left so */
 	bool heard;	  /* a motion report, since the mode was switched last */
-	int64_t switched_ns;
+	int64_t switched_ns, heard_ns;
 	struct track_hydra_state state;
 };
 
@@ -98,6 +99,7 @@ static void start(struct hydra *h)
 	h->state = (struct track_hydra_state){ 0 };
 	n = track_hid_read(&h->device, h->reports, bytes, sizeof bytes, LISTEN_MS);
 	h->heard = n == TRACK_HYDRA_BYTES;
+	h->heard_ns = track_device_now(&h->device);
 	h->was_gamepad = !h->heard;
 	if (!h->heard)
 		switch_mode(h, true);
@@ -158,6 +160,7 @@ static int take(struct hydra *h, const uint8_t *bytes, size_t len, char *why, si
 		return GR_ERR_STATE;
 	}
 	h->heard = true;
+	h->heard_ns = track_device_now(&h->device);
 	track_device_missed(&h->device, track_hydra_reports(&h->state, &raw,
 							    track_device_now(&h->device), reports));
 	for (int i = 0; i < TRACK_HYDRA_WANDS; i++)
@@ -178,7 +181,8 @@ static int read_hydra(struct track_device *device, int timeout_ms, char *why, si
 		snprintf(why, size, "unplugged");
 		return GR_ERR_IO;
 	}
-	if (!h->heard && track_device_now(device) - h->switched_ns > SWITCH_NS)
+	if (h->heard ? track_device_now(device) - h->heard_ns > SILENCE_NS
+		     : track_device_now(device) - h->switched_ns > SWITCH_NS)
 		switch_mode(h, true);
 	return GR_NOTHING;
 }

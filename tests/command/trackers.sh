@@ -53,6 +53,14 @@ wrong() {
 wrong "need --layout" --open
 wrong "not both" --layout "$work/room.cave" --socket "$work/none"
 wrong "asks no master" --layout "$work/room.cave" --socket "$work/none" --open
+# Neither a log nor what was measured is written over the layout, by whatever name it goes.
+room '{ name = "wands"; kind = "hydra"; bind = ( { body = "wand"; sensor = "right"; } ); }'
+ln -s room.cave "$work/link.cave"
+echo "a 0 0 0" >"$work/points"
+cp "$work/room.cave" "$work/before.cave"
+wrong "write over the layout" --layout "$work/room.cave" --seconds 0.2 --record "$work/link.cave"
+wrong "write over the layout" calibrate --layout "$work/link.cave" --points "$work/points" --keep "$work/room.cave" --open </dev/null
+cmp -s "$work/room.cave" "$work/before.cave" || fail "the layout is another now"
 room '{ name = "wands"; kind = "hydra"; bind = ( { body = "wand"; sensor = "middle"; buttons = "1 fire"; } ); }'
 wrong 'sensor: "middle" is no sensor of a hydra; it has left, right' --open --layout "$work/room.cave"
 room '{ name = "wands"; kind = "hydra"; bind = ( { body = "wand"; buttons = "1 fire"; } ); }'

@@ -299,6 +299,32 @@ static void always_a_pose(void **state)
 	}
 }
 
+/* Any time constant that a layout may have, also far below the time between two samples. */
+static void any_time_constant(void **state)
+{
+	struct track_filter_params params = open_gate(TRACK_FILTER_EXPONENTIAL);
+
+	(void)state;
+	params.gap_s = 5;
+	for (double tau_s = 1e-4; tau_s < 1; tau_s *= 1.5) {
+		struct track_filter f;
+		struct gr_pose out;
+
+		params.position.tau_s = params.orientation.tau_s = tau_s;
+		track_filter_init(&f, &params);
+		for (int i = 0; i < 300; i++) {
+			const double s = 0.01 * i + (i > 100 ? 3 : 0);
+			const struct gr_pose in = pose_of(0.7 * s, 0.3 * s);
+
+			assert_int_equal(track_filter_add(&f, (int64_t)(s * 1e9) + 1, &in), GR_OK);
+			assert_true(track_filter_at(&f, f.time_ns + 30 * MS, &out));
+			assert_true(finite_pose(&out));
+		}
+		if (tau_s < 0.01) /* it has settled on the ramp */
+			assert_true(fabs((double)out.p[0] - 0.7 * ((double)f.time_ns * 1e-9 + 0.03)) < 1e-4);
+	}
+}
+
 /* An hour at 1000 Hz of one who does not move: nothing drifts, and no covariance wears out. */
 static void an_hour_at_rest(void **state)
 {
@@ -333,6 +359,7 @@ int main(void)
 		cmocka_unit_test(lost_and_seen_again),
 		cmocka_unit_test(bad_samples_change_nothing),
 		cmocka_unit_test(always_a_pose),
+		cmocka_unit_test(any_time_constant),
 		cmocka_unit_test(an_hour_at_rest),
 	};
 	return cmocka_run_group_tests_name("filter", tests, NULL, NULL);

@@ -518,6 +518,13 @@ static void a_lost_wand_does_nothing(void **state)
 	hold(f, UINT32_MAX, 1, 60);
 	assert_int_equal(f->hand.mode, HAND_LIGHTING);
 	assert_memory_equal(&f->room, &f->scene.room, sizeof f->room);
+	/* Pressed while it was lost, and held still. */
+	f->input.wand.tracked = true;
+	step(f, BIT(3));
+	assert_int_equal(f->hand.mode, HAND_LIGHTING);
+	step(f, 0);
+	step(f, BIT(3));
+	assert_int_equal(f->hand.mode, HAND_SETTINGS);
 }
 
 /* Any input at all: the room stays a pose, the settings stay in their ranges. */

@@ -6,6 +6,8 @@
 #include "tracking/hid.h"
 #include "tracking/hid_descriptor.h"
 
+#include <pthread.h>
+
 static struct track_hid_pads pads;
 
 static void parse(const uint8_t *bytes, size_t len)
@@ -450,6 +452,40 @@ static void cut_off_and_damaged(void **state)
 	printf("# %u of 20000 damaged descriptors are some other pad's\n", accepted);
 }
 
+static void *look_and_open(void *ctx)
+{
+	const struct track_hid_node none = { .path = "/dev/grotto-none" };
+	struct track_hid_node nodes[2];
+	char why[TRACK_WHY];
+	hid_device *hid;
+
+	(void)ctx;
+	for (int i = 0; i < 5000; i++) {
+		if (track_hid_open(&none, &hid, why, sizeof why) != TRACK_ABSENT)
+			return ctx;
+		if (i % 100 == 0)
+			(void)track_hid_list(0xfffe, 0xfffe, nodes, 2);
+	}
+	return NULL;
+}
+
+/* As the threads of several absent devices do: hidapi's error text is one for all of them. */
+static void several_threads_look_at_once(void **state)
+{
+	pthread_t threads[4];
+	char wrong;
+
+	(void)state;
+	for (int i = 0; i < 4; i++)
+		assert_int_equal(pthread_create(&threads[i], NULL, look_and_open, &wrong), 0);
+	for (int i = 0; i < 4; i++) {
+		void *result;
+
+		assert_int_equal(pthread_join(threads[i], &result), 0);
+		assert_null(result);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -467,6 +503,7 @@ int main(void)
 		cmocka_unit_test(what_is_malformed_is_refused_with_the_place),
 		cmocka_unit_test(limits_hold),
 		cmocka_unit_test(cut_off_and_damaged),
+		cmocka_unit_test(several_threads_look_at_once),
 	};
 
 	return cmocka_run_group_tests_name("hid_descriptor", tests, NULL, NULL);

@@ -157,6 +157,25 @@ static void another_program_switches_it(void **state)
 	assert_int_equal(mock_hydra_mode(&f->hydra), MOCK_HYDRA_MOTION);
 }
 
+/* In gamepad mode interface 0 is silent: nothing but that tells of it. */
+static void another_program_switches_it_and_it_is_silent(void **state)
+{
+	struct fixture *f = *state;
+	const int64_t end_ns = gr_clock_now(&gr_clock_monotonic) + 10 * GR_NS_PER_S;
+
+	mock_hydra_plug(&f->hydra, bed, 0, 1);
+	until(f, TRACK_RUNNING);
+	mock_hydra_say(&f->hydra, 1, 100, 0, -100);
+	next(f);
+	mock_hydra_set_mode(&f->hydra, MOCK_HYDRA_GAMEPAD);
+	while (mock_hydra_mode(&f->hydra) != MOCK_HYDRA_MOTION) {
+		assert_true(gr_clock_now(&gr_clock_monotonic) < end_ns);
+		track_device_turn(f->device, 20);
+	}
+	mock_hydra_say(&f->hydra, 2, 100, 0, -100);
+	next(f);
+}
+
 /* It is there before the driver looks, and again after each unplugging, on other nodes. */
 static void unplugged_and_plugged_again(void **state)
 {
@@ -381,6 +400,7 @@ int main(int argc, char **argv)
 		TEST(one_that_was_in_motion_mode_is_left_there),
 		TEST(damaged_reports_are_counted_and_go_nowhere),
 		TEST(another_program_switches_it),
+		TEST(another_program_switches_it_and_it_is_silent),
 		TEST(unplugged_and_plugged_again),
 		TEST(udev_tells_of_it),
 		TEST(a_thread_of_its_own),

@@ -298,6 +298,23 @@ static void rate_and_evenness(void **state)
 	assert_float_equal(stats->jitter_ms, 2, 0.02);
 }
 
+/* Both wands of a report come at once, some microseconds apart: one arrival, and an even one. */
+static void rate_of_two_sensors(void **state)
+{
+	struct fixture *f = *state;
+	const struct tracker_stats *stats = &f->open.all[0].stats;
+
+	for (int i = 0; i < 1000; i++, f->clock.now_ns += PERIOD_NS) {
+		say(f, report(f, 0, 0));
+		f->clock.now_ns += 10000;
+		say(f, report(f, 1, 0));
+		f->clock.now_ns -= 10000;
+	}
+	assert_float_equal(stats->rate_hz, 250, 1.5);
+	assert_float_equal(stats->jitter_ms, 0, 1e-6);
+	assert_int_equal(stats->heard, 2000);
+}
+
 static void what_is_said_of_it(void **state)
 {
 	struct fixture *f = *state;
@@ -391,6 +408,7 @@ int main(void)
 		WITH(a_moving_head_that_is_lost_goes_back_to_where_it_was_seen),
 		WITH(silence_is_a_drop_out),
 		WITH(rate_and_evenness),
+		WITH(rate_of_two_sensors),
 		WITH(what_is_said_of_it),
 		WITH(a_master_that_was_away),
 		cmocka_unit_test(names_that_a_pad_does_not_have),
