@@ -152,6 +152,7 @@ tests_unit_test_tracker_devices_LDADD = daemon/libgdaemon.a $(TRACKING_LIBS) $(C
 
 EXTRA_DIST += tests/fuzz/fuzz_control.c \
 	tests/fuzz/corpus/control/cut \
+	tests/fuzz/corpus/control/gathers \
 	tests/fuzz/corpus/control/set \
 	tests/fuzz/corpus/control/wrong
 if FUZZERS

@@ -81,7 +81,7 @@ static void start(struct room *room)
 	room->settings.exposure = room->settings.gamma_encode = 1;
 	room->settings.adaptation = room->settings.luminance_max = 100;
 	room->settings.tone_bias = 0.85f;
-	room->settings.gi_steps = 1;
+	room->settings.gi_steps = room->settings.gi_gathers = 1;
 }
 
 static void run(struct room *room)
