@@ -68,8 +68,8 @@ static int end(void **state)
 
 static bool as_wanted(const struct master_input *in)
 {
-	/* The cap is pushed to the right until it may go no further. */
-	return in->head.tracked && in->head.T_room_body.p[0] > 0.499999f && in->wand.tracked &&
+	/* The cap is pushed to the right until it may go no further, and has come to rest there. */
+	return in->head.tracked && fabsf(in->head.T_room_body.p[0] - 0.5f) < 5e-7f && in->wand.tracked &&
 	       in->buttons == 5;
 }
 
