@@ -1,6 +1,13 @@
+#include <config.h> /* ppoll */
+
 #include "tools/bench/cluster_ends.h"
 
+#include "base/clock.h"
 #include "base/result.h"
+
+#include <poll.h>
+
+#define LOOK_NS (20 * GR_NS_PER_MS)
 
 static void master_send(void *ctx, int to, const uint8_t *bytes, size_t len)
 {
@@ -66,4 +73,19 @@ void cluster_node_close(struct cluster_node *node)
 {
 	fdp_node_destroy(&node->fdp);
 	net_close(&node->net);
+}
+
+void cluster_wait(struct net *net, int64_t until_ns)
+{
+	struct pollfd fds[2];
+	int raw[2];
+	const int count = net_fds(net, raw);
+	int64_t left_ns = until_ns - gr_clock_now(&gr_clock_monotonic);
+	struct timespec ts;
+
+	left_ns = left_ns < 0 ? 0 : left_ns > LOOK_NS ? LOOK_NS : left_ns;
+	ts = (struct timespec){ .tv_nsec = (long)left_ns };
+	for (int i = 0; i < count; i++)
+		fds[i] = (struct pollfd){ .fd = raw[i], .events = POLLIN };
+	ppoll(fds, (nfds_t)count, &ts, NULL);
 }

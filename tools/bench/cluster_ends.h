@@ -37,4 +37,7 @@ bool cluster_node_open(struct cluster_node *node,
 		       void (*event)(void *ctx, const struct fdp_node_event *event));
 void cluster_node_close(struct cluster_node *node);
 
+/* Until something can be read or the time has come; no longer than an end looks whether the run is over. */
+void cluster_wait(struct net *net, int64_t until_ns);
+
 #endif

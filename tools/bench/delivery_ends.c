@@ -1,38 +1,18 @@
-#include <config.h> /* ppoll */
-
 #include "tools/bench/delivery.h"
 
 #include "base/clock.h"
 #include "protocol/message.h"
 #include "tools/bench/cluster_ends.h"
 
-#include <poll.h>
 #include <string.h>
 
 #define RECEIVE_MOST 256
-#define LOOK_NS (20 * GR_NS_PER_MS) /* how often an end looks whether the run is over */
 #define BALLAST_WORDS_MOST (UINT16_MAX / 4) /* the size of a parameter has 16 bits */
 #define DEADLINE_NS (33 * GR_NS_PER_MS)
 
 static int64_t now(void)
 {
 	return gr_clock_now(&gr_clock_monotonic);
-}
-
-/* Until something can be read or the time has come. */
-static void wait_for(struct net *net, int64_t until_ns)
-{
-	struct pollfd fds[2];
-	int raw[2];
-	const int count = net_fds(net, raw);
-	int64_t left_ns = until_ns - now();
-	struct timespec ts;
-
-	left_ns = left_ns < 0 ? 0 : left_ns > LOOK_NS ? LOOK_NS : left_ns;
-	ts = (struct timespec){ .tv_nsec = (long)left_ns };
-	for (int i = 0; i < count; i++)
-		fds[i] = (struct pollfd){ .fd = raw[i], .events = POLLIN };
-	ppoll(fds, (nfds_t)count, &ts, NULL);
 }
 
 struct master_end {
@@ -194,7 +174,7 @@ static void master_run(struct master_end *m)
 		net_flush(m->end.net);
 		if (present && fdp_master_idle(m->end.fdp) && m->frame < last && m->next_ns < until_ns)
 			until_ns = m->next_ns;
-		wait_for(m->end.net, until_ns);
+		cluster_wait(m->end.net, until_ns);
 		net_receive(m->end.net, fds[0], RECEIVE_MOST, master_datagram, m);
 		net_flush(m->end.net);
 	}
@@ -287,7 +267,7 @@ void delivery_node(struct delivery_room *room, unsigned node)
 			if (now() >= fdp_node_next(n.end.fdp))
 				fdp_node_tick(n.end.fdp, now());
 			node_answer(&n);
-			wait_for(n.end.net, fdp_node_next(n.end.fdp));
+			cluster_wait(n.end.net, fdp_node_next(n.end.fdp));
 			for (int i = 0; i < count; i++) {
 				net_receive(n.end.net, fds[i], RECEIVE_MOST, node_datagram, &n);
 				node_answer(&n);

@@ -1,7 +1,5 @@
 /* The ends of a room whose light is shared out and rests, as the daemons do it, with nothing to
  * draw. */
-#include <config.h> /* ppoll */
-
 #include "tools/bench/rejoin.h"
 
 #include "base/clock.h"
@@ -10,33 +8,16 @@
 #include "tools/bench/cluster_ends.h"
 
 #include <math.h>
-#include <poll.h>
 #include <stdlib.h>
 #include <time.h>
 
 #define RECEIVE_MOST 256
-#define LOOK_NS (20 * GR_NS_PER_MS)
 #define DEADLINE_NS (33 * GR_NS_PER_MS)
 #define SLICE_HEAD 12
 
 static int64_t now(void)
 {
 	return gr_clock_now(&gr_clock_monotonic);
-}
-
-static void wait_for(struct net *net, int64_t until_ns)
-{
-	struct pollfd fds[2];
-	int raw[2];
-	const int count = net_fds(net, raw);
-	int64_t left_ns = until_ns - now();
-	struct timespec ts;
-
-	left_ns = left_ns < 0 ? 0 : left_ns > LOOK_NS ? LOOK_NS : left_ns;
-	ts = (struct timespec){ .tv_nsec = (long)left_ns };
-	for (int i = 0; i < count; i++)
-		fds[i] = (struct pollfd){ .fd = raw[i], .events = POLLIN };
-	ppoll(fds, (nfds_t)count, &ts, NULL);
 }
 
 struct master_end {
@@ -133,7 +114,7 @@ static void master_run(struct master_end *m)
 		net_flush(m->end.net);
 		if (begun && fdp_master_idle(m->end.fdp) && m->next_ns < until_ns)
 			until_ns = m->next_ns;
-		wait_for(m->end.net, until_ns);
+		cluster_wait(m->end.net, until_ns);
 		net_receive(m->end.net, fds[0], RECEIVE_MOST, master_datagram, m);
 		net_flush(m->end.net);
 	}
@@ -275,7 +256,7 @@ static void node_run(struct node_end *n)
 		if (now() >= fdp_node_next(n->end.fdp))
 			fdp_node_tick(n->end.fdp, now());
 		node_answer(n);
-		wait_for(n->end.net, fdp_node_next(n->end.fdp));
+		cluster_wait(n->end.net, fdp_node_next(n->end.fdp));
 		for (int i = 0; i < count; i++) {
 			net_receive(n->end.net, fds[i], RECEIVE_MOST, node_datagram, n);
 			node_answer(n);
